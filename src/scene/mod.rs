@@ -1,0 +1,55 @@
+//! What is drawn: meshes, materials, a camera and lights. Plain data; the renderer checks it once, at its border.
+
+mod camera;
+mod light;
+mod material;
+mod mesh;
+
+pub use camera::Camera;
+pub use light::Light;
+pub use material::Material;
+pub use mesh::Mesh;
+
+use crate::error::{Error, Result};
+use glam::Vec3;
+
+/// What is drawn.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// The surfaces. Each names one of `materials`.
+    pub meshes: Vec<Mesh>,
+    /// What the surfaces are made of.
+    pub materials: Vec<Material>,
+    /// From where they are seen.
+    pub camera: Camera,
+    /// What lights them under [`Lighting::Lit`](crate::Lighting::Lit).
+    pub lights: Vec<Light>,
+    /// Light from everywhere, linear RGB, added to the lights under [`Lighting::Lit`](crate::Lighting::Lit).
+    pub ambient: Vec3,
+    /// Colour where nothing is hit, linear RGB and opacity. Default: black and transparent.
+    pub background: [f32; 4],
+}
+
+impl Scene {
+    /// Checks indices, array lengths and that every number is finite.
+    ///
+    /// # Errors
+    /// Names the first part that is not valid.
+    pub fn validate(&self) -> Result<()> {
+        self.camera.validate()?;
+        for (i, material) in self.materials.iter().enumerate() {
+            material.validate().map_err(|reason| Error::scene(format!("material {i} ({})", material.name), reason))?;
+        }
+        for (i, mesh) in self.meshes.iter().enumerate() {
+            mesh.validate(self.materials.len())
+                .map_err(|reason| Error::scene(format!("mesh {i} ({})", mesh.name), reason))?;
+        }
+        for (i, light) in self.lights.iter().enumerate() {
+            light.validate().map_err(|reason| Error::scene(format!("light {i}"), reason))?;
+        }
+        if !self.ambient.is_finite() || !self.background.iter().all(|c| c.is_finite()) {
+            return Err(Error::scene("scene", "ambient and background must be finite"));
+        }
+        Ok(())
+    }
+}

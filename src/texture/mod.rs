@@ -1,0 +1,12 @@
+//! Stored texels: images as they are loaded, and the packed pyramid that the filters read.
+//!
+//! Everything is linear. Rows are stored bottom up: row 0 holds v = 0, so that texel `i` of a row of `n` lies at
+//! `(i + 0.5) / n` repeats in both directions.
+
+mod color;
+mod image;
+mod surface;
+
+pub use color::{linear_from_srgb, srgb_from_linear};
+pub use image::{ColorImage, HeightImage, NormalImage};
+pub use surface::{Level, Surface, SurfaceMaps, Wrap};
