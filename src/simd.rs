@@ -4,10 +4,10 @@
 //! For the same bytes on every machine: `a * b + c` and never `mul_add`, `1.0 / x` and never `recip`, sums of lanes in
 //! one fixed order ([`sum`]), minima and maxima by [`f32x8::fast_min`] and [`f32x8::fast_max`] on values that are not NaN.
 
-pub(crate) use wide::{CmpEq, CmpGe, CmpGt, CmpLe, CmpLt, f32x8, f32x16, i32x8, u32x8, u32x16};
+pub use wide::{f32x8, f32x16, i32x8, i32x16, u32x8, u32x16};
 
 /// Eight pixels: two 2x2 quads, lane `4 * quad + 2 * dy + dx`.
-pub(crate) type PixelLanes = f32x8;
+pub type PixelLanes = f32x8;
 
 /// The name of the instruction set that the lanes were built for.
 pub const LEVEL: &str = if cfg!(target_feature = "avx512f") {

@@ -15,22 +15,13 @@ pub struct Material {
     pub specular: Vec3,
     /// Blinn-Phong exponent (`Ns`), 0 to 1e4. Default: 32.
     pub shininess: f32,
-    /// Textures; `None` draws the plain diffuse colour. Shared between materials that use the same maps.
+    /// Textures and relief; `None` draws the plain diffuse colour. Shared between materials that use the same maps.
     pub surface: Option<Arc<Surface>>,
-    /// Depth of the deepest relief below the polygon, in texture repeats, 0 to 1. Default: 0.05.
-    pub relief_depth: f32,
 }
 
 impl Default for Material {
     fn default() -> Self {
-        Self {
-            name: String::new(),
-            diffuse: Vec3::ONE,
-            specular: Vec3::ZERO,
-            shininess: 32.0,
-            surface: None,
-            relief_depth: 0.05,
-        }
+        Self { name: String::new(), diffuse: Vec3::ONE, specular: Vec3::ZERO, shininess: 32.0, surface: None }
     }
 }
 
@@ -42,9 +33,6 @@ impl Material {
         }
         if !(0.0..=1e4).contains(&self.shininess) {
             return Err(format!("shininess {} is not within 0 to 1e4", self.shininess));
-        }
-        if !(0.0..=1.0).contains(&self.relief_depth) {
-            return Err(format!("relief depth {} is not within 0 to 1", self.relief_depth));
         }
         Ok(())
     }

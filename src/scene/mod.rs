@@ -2,11 +2,13 @@
 
 mod camera;
 mod light;
+mod load;
 mod material;
 mod mesh;
 
 pub use camera::Camera;
 pub use light::Light;
+pub use load::{HeightSense, LoadOptions, Loaded, NormalY, load};
 pub use material::Material;
 pub use mesh::Mesh;
 

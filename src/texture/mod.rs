@@ -5,8 +5,13 @@
 
 mod color;
 mod image;
+mod level;
+mod pyramid;
+mod resample;
 mod surface;
 
 pub use color::{linear_from_srgb, srgb_from_linear};
 pub use image::{ColorImage, HeightImage, NormalImage};
-pub use surface::{Level, Surface, SurfaceMaps, Wrap};
+pub use level::Level;
+pub use surface::{Surface, SurfaceMaps, Wrap};
+pub(crate) use level::{APRON, unpack_normal};

@@ -1,0 +1,107 @@
+//! One level of a pyramid: packed texels in an order made for row sweeps.
+//!
+//! A texel is two words, `red | green << 16` and `blue | height << 16`, each 16 bits of linear light or height, and,
+//! where normals are kept, a third word (see [`pack_normal`]). A row stores its words plane by plane, with an apron of
+//! [`APRON`] texels on both sides, so that any run of that many neighbouring texels is one contiguous load per plane.
+
+use super::Wrap;
+use crate::simd::u32x16;
+
+/// Texels that a row repeats beyond both of its ends: the widest run of lanes that is loaded at once.
+pub(crate) const APRON: usize = 16;
+
+/// One texel as it is packed.
+pub(crate) type PackedTexel = [u32; 3];
+
+/// One level of a [`Surface`](super::Surface)'s pyramid.
+#[derive(Clone, Debug)]
+pub struct Level {
+    /// Texels a row before the pattern wraps.
+    pub width: usize,
+    /// Rows before the pattern wraps.
+    pub height: usize,
+    wrap: Wrap,
+    num_planes: usize,
+    words: Vec<u32>,
+}
+
+impl Level {
+    /// A level from its texels, row by row.
+    pub(crate) fn new(width: usize, height: usize, wrap: Wrap, num_planes: usize, texels: &[PackedTexel]) -> Self {
+        let stride = width + 2 * APRON;
+        let mut words = vec![0; stride * num_planes * height];
+        let columns: Vec<usize> = (0..stride).map(|i| wrap_index(wrap, i as i32 - APRON as i32, width)).collect();
+        for (row, texels) in words.chunks_exact_mut(stride * num_planes).zip(texels.chunks_exact(width)) {
+            for (plane, words) in row.chunks_exact_mut(stride).enumerate() {
+                words.iter_mut().zip(&columns).for_each(|(word, &x)| *word = texels[x][plane]);
+            }
+        }
+        Self { width, height, wrap, num_planes, words }
+    }
+
+    /// The packed texel at a column and row of the endless pattern.
+    pub(crate) fn packed(&self, x: i32, y: i32) -> PackedTexel {
+        let x = wrap_index(self.wrap, x, self.width) + APRON;
+        let row = self.row(y);
+        let stride = self.width + 2 * APRON;
+        std::array::from_fn(|plane| if plane < self.num_planes { row[plane * stride + x] } else { 0 })
+    }
+
+    /// The words of a row of the endless pattern, all planes.
+    pub(crate) fn row(&self, y: i32) -> &[u32] {
+        let pitch = (self.width + 2 * APRON) * self.num_planes;
+        let start = wrap_index(self.wrap, y, self.height) * pitch;
+        &self.words[start..start + pitch]
+    }
+
+    /// Where a run of up to [`APRON`] texels that begins at column `x` of the endless pattern starts within a plane.
+    pub(crate) fn run_start(&self, x: i32) -> usize {
+        match self.wrap {
+            Wrap::Clamp => (x.clamp(-(APRON as i32), self.width as i32) + APRON as i32) as usize,
+            Wrap::Repeat | Wrap::Mirror => wrap_index(self.wrap, x, self.width) + APRON,
+        }
+    }
+
+    /// Distance in words between the planes of a row.
+    pub(crate) fn stride(&self) -> usize {
+        self.width + 2 * APRON
+    }
+
+    /// Sixteen neighbouring words of a plane, `start` being [`Self::run_start`] plus a multiple of [`Self::stride`].
+    pub(crate) fn run(row: &[u32], start: usize) -> u32x16 {
+        let lanes: &[u32; 16] = row[start..start + 16].try_into().expect("a slice of sixteen");
+        u32x16::new(*lanes)
+    }
+
+    /// The height, 0 to 1, at a column and row of the endless pattern.
+    #[must_use]
+    pub fn height_at(&self, x: i32, y: i32) -> f32 {
+        (self.packed(x, y)[1] >> 16) as f32 * (1.0 / 65535.0)
+    }
+
+    /// Bytes that the level takes.
+    pub(crate) fn num_bytes(&self) -> usize {
+        self.words.len() * 4
+    }
+}
+
+/// The stored index of place `i` of an endless row of period `n`. A mirrored pattern is stored whole, so it repeats.
+pub(crate) fn wrap_index(wrap: Wrap, i: i32, n: usize) -> usize {
+    let n = n as i32;
+    match wrap {
+        Wrap::Clamp => i.clamp(0, n - 1) as usize,
+        Wrap::Repeat | Wrap::Mirror => i.rem_euclid(n) as usize,
+    }
+}
+
+/// A normal (components -1 to 1, length at most 1) in one word: x and y in 11 bits, z in 10.
+pub(crate) fn pack_normal(n: [f32; 3]) -> u32 {
+    let unit = |c: f32, most: f32| ((c.clamp(-1.0, 1.0) * 0.5 + 0.5) * most + 0.5) as u32;
+    unit(n[0], 2046.0) | unit(n[1], 2046.0) << 11 | unit(n[2], 1022.0) << 22
+}
+
+/// The inverse of [`pack_normal`].
+pub(crate) fn unpack_normal(word: u32) -> [f32; 3] {
+    let signed = |bits: u32, half: f32| (bits as f32 - half) / half;
+    [signed(word & 2047, 1023.0), signed(word >> 11 & 2047, 1023.0), signed(word >> 22, 511.0)]
+}

@@ -1,0 +1,141 @@
+//! The texels of a material: colour, height and normals of one size, packed, with every mip level and a transposed copy.
+
+use super::level::{Level, PackedTexel, pack_normal};
+use super::{ColorImage, HeightImage, NormalImage, pyramid, resample};
+use crate::error::{Error, Result};
+
+/// What lies beyond the edge of a texture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    /// The texture again.
+    #[default]
+    Repeat,
+    /// The texture mirrored, then again.
+    Mirror,
+    /// The texels of the edge.
+    Clamp,
+}
+
+/// What a [`Surface`] is made from. Maps may differ in size; all are brought to the largest width and height.
+#[derive(Clone, Debug)]
+pub struct SurfaceMaps {
+    /// Colour; `None` is white.
+    pub albedo: Option<ColorImage>,
+    /// Height; `None` is flat.
+    pub height: Option<HeightImage>,
+    /// Normals for lighting; `None` takes them from the heights.
+    pub normal: Option<NormalImage>,
+    /// What lies beyond the edges. Default: repeat.
+    pub wrap: Wrap,
+    /// Depth of the deepest relief below the polygon in texture repeats, 0 to 1. Default: 0.05.
+    pub relief_depth: f32,
+    /// Whether normals are kept: needed for lighting, half as much memory again. Default: `true`.
+    pub keep_normals: bool,
+}
+
+impl Default for SurfaceMaps {
+    fn default() -> Self {
+        Self { albedo: None, height: None, normal: None, wrap: Wrap::Repeat, relief_depth: 0.05, keep_normals: true }
+    }
+}
+
+/// The texels of a material: packed, with every mip level, each also transposed.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// Mip levels, the finest first; rows run along u.
+    pub levels: Vec<Level>,
+    /// The same levels with rows that run along v.
+    pub transposed: Vec<Level>,
+    /// What lies beyond the edges.
+    pub wrap: Wrap,
+    /// Depth of the deepest relief below the polygon in texture repeats; 0 where the surface is flat.
+    pub relief_depth: f32,
+    /// The brightest colour that a texel can hold; stored 65535.
+    pub color_scale: f32,
+    /// Whether the third word of a texel holds a normal.
+    pub has_normals: bool,
+    /// How many repeats of the texture the stored pattern spans: 2 where it is mirrored, else 1.
+    pub repeats_stored: u32,
+}
+
+impl Surface {
+    /// Packs the maps and builds the pyramid.
+    ///
+    /// # Errors
+    /// Names a map whose size is zero, above 32768, or not that of its texels, or a depth out of range.
+    pub fn new(maps: SurfaceMaps) -> Result<Self> {
+        let [width, height] = common_size(&maps)?;
+        let is_flat = maps.height.is_none() || maps.relief_depth == 0.0;
+        let has_normals = maps.keep_normals && (maps.normal.is_some() || !is_flat);
+        let SurfaceMaps { albedo, height: heights, normal, wrap, relief_depth, .. } = maps;
+        let color_scale = albedo.as_ref().map_or(1.0, |image| image.scale);
+        let mut texels = vec![[0xffff_ffff, 0xffff_ffff, 0] as PackedTexel; width * height];
+        if let Some(image) = albedo {
+            resample::fill(&mut texels, [width, height], wrap, &image, |texel, [r, g, b]| {
+                *texel = [r | g << 16, b | texel[1] & 0xffff_0000, texel[2]];
+            });
+        }
+        if let Some(image) = heights.filter(|_| !is_flat) {
+            resample::fill(&mut texels, [width, height], wrap, &image, |texel, [h, ..]| {
+                texel[1] = texel[1] & 0xffff | h << 16;
+            });
+        }
+        if let Some(image) = normal.as_ref().filter(|_| has_normals) {
+            resample::fill(&mut texels, [width, height], wrap, image, |texel, n| {
+                texel[2] = pack_normal(n.map(|c| (c as f32 - 32767.0) / 32767.0));
+            });
+        } else if has_normals {
+            pyramid::normals_from_heights(&mut texels, [width, height], wrap, relief_depth);
+        }
+        let (texels, size) =
+            if wrap == Wrap::Mirror { pyramid::mirrored(&texels, width, height) } else { (texels, [width, height]) };
+        let num_planes = if has_normals { 3 } else { 2 };
+        let (levels, transposed) = pyramid::build(texels, size, wrap, num_planes);
+        Ok(Self {
+            levels,
+            transposed,
+            wrap,
+            relief_depth: if is_flat { 0.0 } else { relief_depth },
+            color_scale,
+            has_normals,
+            repeats_stored: if wrap == Wrap::Mirror { 2 } else { 1 },
+        })
+    }
+
+    /// Texels per texture repeat of a level, along u and v.
+    #[must_use]
+    pub fn texels_per_repeat(&self, level: usize) -> [f32; 2] {
+        let level = &self.levels[level];
+        [level.width, level.height].map(|n| n as f32 / self.repeats_stored as f32)
+    }
+
+    /// Bytes that the texels take.
+    #[must_use]
+    pub fn num_bytes(&self) -> usize {
+        self.levels.iter().chain(&self.transposed).map(Level::num_bytes).sum()
+    }
+}
+
+fn common_size(maps: &SurfaceMaps) -> Result<[usize; 2]> {
+    let refuse = |reason: String| Err(Error::scene("surface", reason));
+    if !(0.0..=1.0).contains(&maps.relief_depth) {
+        return refuse(format!("relief depth {} is not within 0 to 1", maps.relief_depth));
+    }
+    if maps.albedo.as_ref().is_some_and(|image| !(image.scale > 0.0 && image.scale <= 1e6)) {
+        return refuse("the albedo's scale must be above 0 and at most 1e6".into());
+    }
+    let sizes = [
+        maps.albedo.as_ref().map(|m| ("albedo", m.width, m.height, m.texels.len())),
+        maps.height.as_ref().map(|m| ("height", m.width, m.height, m.texels.len())),
+        maps.normal.as_ref().map(|m| ("normal", m.width, m.height, m.texels.len())),
+    ];
+    let mut common = [1, 1];
+    for (name, width, height, num_texels) in sizes.into_iter().flatten() {
+        let (w, h) = (width as usize, height as usize);
+        if !(1..=32768).contains(&w) || !(1..=32768).contains(&h) || w * h != num_texels {
+            return refuse(format!("the {name} map says {w} x {h} texels and has {num_texels}"));
+        }
+        common = [common[0].max(w), common[1].max(h)];
+    }
+    Ok(common)
+}
