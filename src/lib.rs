@@ -9,7 +9,13 @@ mod frame;
 // The stages are public to the crate's own tests, benches and fuzz targets, and no part of the interface.
 #[doc(hidden)]
 pub mod raster;
+#[doc(hidden)]
+pub mod filter;
+#[doc(hidden)]
+pub mod relief;
 mod settings;
+#[doc(hidden)]
+pub mod shade;
 #[doc(hidden)]
 pub mod simd;
 

@@ -5,7 +5,7 @@
 //! [`APRON`] texels on both sides, so that any run of that many neighbouring texels is one contiguous load per plane.
 
 use super::Wrap;
-use crate::simd::u32x16;
+use crate::simd::u32x8;
 
 /// Texels that a row repeats beyond both of its ends: the widest run of lanes that is loaded at once.
 pub(crate) const APRON: usize = 16;
@@ -67,10 +67,15 @@ impl Level {
         self.width + 2 * APRON
     }
 
-    /// Sixteen neighbouring words of a plane, `start` being [`Self::run_start`] plus a multiple of [`Self::stride`].
-    pub(crate) fn run(row: &[u32], start: usize) -> u32x16 {
-        let lanes: &[u32; 16] = row[start..start + 16].try_into().expect("a slice of sixteen");
-        u32x16::new(*lanes)
+    /// Eight neighbouring words of a row, from `start`: [`Self::run_start`] plus a multiple of [`Self::stride`].
+    pub(crate) fn run(row: &[u32], start: usize) -> u32x8 {
+        let lanes: &[u32; 8] = row[start..start + 8].try_into().expect("a slice of eight");
+        u32x8::new(*lanes)
+    }
+
+    /// Whether texels have a third word, their normal.
+    pub(crate) fn has_normals(&self) -> bool {
+        self.num_planes == 3
     }
 
     /// The height, 0 to 1, at a column and row of the endless pattern.

@@ -1,0 +1,83 @@
+//! The ellipse of a footprint, formula (1): `A U^2 + B U V + C V^2 = F`, in texels of a mip level.
+//!
+//! ```text
+//! A = Vx^2 + Vy^2    B = -2 (Ux Vx + Uy Vy)    C = Ux^2 + Uy^2
+//! F = (Ux Vy - Uy Vx)^2 as meant (Heckbert)    F = (Ux Vy + Uy Vx)^2 as printed
+//! ```
+//!
+//! With `J` the matrix of the derivatives, `J J^T = [[C, -B/2], [-B/2, A]]` and `F = det(J J^T) = A C - B^2/4`.
+//! What the paper leaves out (Heckbert 1989): a reconstruction kernel is added to A and C, so that the ellipse never falls
+//! between texels, and the shorter axis is widened where the longer exceeds the greatest anisotropy.
+
+use super::Footprint;
+use crate::settings::Formulas;
+
+/// What is added to A and C, in square texels: four times the variance, 1/6, of bilinear interpolation between texels.
+pub const RECONSTRUCTION: f32 = 4.0 / 6.0;
+
+/// The coefficients of formula (1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipse {
+    /// `Vx^2 + Vy^2`.
+    pub a: f32,
+    /// `-2 (Ux Vx + Uy Vy)`.
+    pub b: f32,
+    /// `Ux^2 + Uy^2`.
+    pub c: f32,
+    /// The right side.
+    pub f: f32,
+}
+
+impl Ellipse {
+    /// Formula (1) for a footprint, in texels of a level with that many texels a repeat.
+    #[must_use]
+    pub fn new(footprint: &Footprint, texels: [f32; 2], formulas: Formulas) -> Self {
+        let [ux, vx] = [footprint.dx[0] * texels[0], footprint.dx[1] * texels[1]];
+        let [uy, vy] = [footprint.dy[0] * texels[0], footprint.dy[1] * texels[1]];
+        let root = match formulas {
+            Formulas::Meant => ux * vy - uy * vx,
+            Formulas::Printed => ux * vy + uy * vx,
+        };
+        Self { a: vx * vx + vy * vy, b: -2.0 * (ux * vx + uy * vy), c: ux * ux + uy * uy, f: root * root }
+    }
+
+    /// The ellipse with the reconstruction kernel added and its anisotropy bounded. A printed F stays as printed.
+    #[must_use]
+    pub fn widened(self, max_anisotropy: f32, formulas: Formulas) -> Self {
+        let (a, b, c) = (self.a + RECONSTRUCTION, self.b, self.c + RECONSTRUCTION);
+        // Eigenvalues of [[c, -b/2], [-b/2, a]]: squares of the half axes.
+        let (mean, half) = ((a + c) * 0.5, ((a - c) * (a - c) * 0.25 + b * b * 0.25).sqrt());
+        let long = mean + half;
+        let short = ((a * c - b * b * 0.25) / long).max(RECONSTRUCTION * 0.5);
+        let lift = (long / (max_anisotropy * max_anisotropy) - short).max(0.0);
+        // The square of the short axis grows along its own direction, the eigenvector of `short`.
+        let share = if half > 0.0 { lift / (2.0 * half) } else { 0.0 };
+        let (a, b, c) = (a + share * (long - a), b - share * b, c + share * (long - c));
+        let meant = (long * (short + lift)).max(f32::MIN_POSITIVE);
+        Self { a, b, c, f: if formulas == Formulas::Meant { meant } else { self.f } }
+    }
+
+    /// Area in square texels.
+    #[must_use]
+    pub fn area(&self) -> f32 {
+        let determinant = (4.0 * self.a * self.c - self.b * self.b).max(f32::MIN_POSITIVE);
+        2.0 * std::f32::consts::PI * self.f / determinant.sqrt()
+    }
+
+    /// Greatest |V| inside.
+    #[must_use]
+    pub fn half_height(&self) -> f32 {
+        (4.0 * self.a * self.f / (4.0 * self.a * self.c - self.b * self.b).max(f32::MIN_POSITIVE)).sqrt()
+    }
+
+    /// The least and greatest U inside on the line of constant V; `None` where the line misses.
+    #[must_use]
+    pub fn row(&self, v: f32) -> Option<[f32; 2]> {
+        let (half_b, c) = (self.b * 0.5 * v, self.c * v * v - self.f);
+        let discriminant = half_b * half_b - self.a * c;
+        (discriminant >= 0.0).then(|| {
+            let root = discriminant.sqrt();
+            [(-half_b - root) / self.a, (-half_b + root) / self.a]
+        })
+    }
+}

@@ -1,0 +1,113 @@
+//! A pixel's footprint in the texture: where it is and how far it reaches, from its 2x2 quad.
+//!
+//! Formula (2) takes differences of the undisplaced coordinates, formula (3) of the displaced ones, with the offsets
+//! (m, r) at (x, y), (n, o) at (x+1, y) and (p, s) at (x, y+1):
+//!
+//! ```text
+//! meant    du/dx = (u(x+1,y) + n) - (u(x,y) + m)    dv/dx = (v(x+1,y) + o) - (v(x,y) + r)
+//!          du/dy = (u(x,y+1) + p) - (u(x,y) + m)    dv/dy = (v(x,y+1) + s) - (v(x,y) + r)
+//! printed  du/dx =  u(x+1,y) + n  -  u(x,y) + m     dv/dx =  v(x+1,y) + o  -  u(x,y) + m
+//!          du/dy =  u(x,y+1) + p  -  v(x,y) + r     dv/dy =  v(x,y+1) + s  -  v(x,y) + r
+//! (2) printed          u(x+1,y) - u(x,y)                    v(x+1,y) - u(x,y)
+//!                      u(x,y+1) - u(x,y)                    v(x,y+1) - u(x,y)
+//! ```
+//!
+//! The x-difference is taken in the pixel's row of the quad and the y-difference in its column.
+
+use crate::relief::finite;
+use crate::settings::{Derivatives, Formulas};
+use crate::simd::PixelLanes;
+
+/// Longest derivative that is kept, in texture repeats a pixel: a footprint of that length holds the mean of all texels
+/// as well as a longer one does.
+const MAX_LENGTH: f32 = 16.0;
+
+/// The derivatives of the texture coordinates of eight pixels, in repeats a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Differences {
+    /// `(du/dx, dv/dx)`.
+    pub dx: [PixelLanes; 2],
+    /// `(du/dy, dv/dy)`.
+    pub dy: [PixelLanes; 2],
+}
+
+/// One pixel's place and derivatives in the texture, in repeats.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Footprint {
+    /// The middle, `(u, v)`.
+    pub center: [f32; 2],
+    /// `(du/dx, dv/dx)`.
+    pub dx: [f32; 2],
+    /// `(du/dy, dv/dy)`.
+    pub dy: [f32; 2],
+}
+
+/// Formula (2) or (3), as meant or as printed, in each quad of `uv` with the relief's `offset`.
+#[must_use]
+pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Derivatives, Formulas)) -> Differences {
+    let [u, v, m, r] = [uv[0], uv[1], offset[0], offset[1]].map(PixelLanes::to_array);
+    let mut result = [[0.0_f32; 8]; 4];
+    for lane in 0..8 {
+        // The quad's pixel at the low end of this lane's row and column.
+        let (row, column) = (lane & !1, lane & !2);
+        let at = |i: usize| Corner { u: u[i], v: v[i], du: m[i], dv: r[i] };
+        let [dudx, dvdx, _, _] = at_pixel(at(row), at(row + 1), at(row), which);
+        let [_, _, dudy, dvdy] = at_pixel(at(column), at(column), at(column + 2), which);
+        [dudx, dvdx, dudy, dvdy].into_iter().zip(&mut result).for_each(|(d, lanes)| lanes[lane] = d);
+    }
+    let [dudx, dvdx, dudy, dvdy] = result.map(|lanes| finite(PixelLanes::new(lanes)));
+    Differences { dx: [dudx, dvdx], dy: [dudy, dvdy] }
+}
+
+/// Coordinates and relief offset of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Corner {
+    /// Undisplaced u.
+    pub u: f32,
+    /// Undisplaced v.
+    pub v: f32,
+    /// Offset of u by the relief (the paper's m, n, p).
+    pub du: f32,
+    /// Offset of v by the relief (the paper's r, o, s).
+    pub dv: f32,
+}
+
+/// `[du/dx, dv/dx, du/dy, dv/dy]` of the pixel `here` from its neighbours `right` and `below`.
+#[must_use]
+pub fn at_pixel(here: Corner, right: Corner, below: Corner, which: (Derivatives, Formulas)) -> [f32; 4] {
+    match which {
+        (Derivatives::Flat, Formulas::Meant) => {
+            [right.u - here.u, right.v - here.v, below.u - here.u, below.v - here.v]
+        }
+        (Derivatives::Flat, Formulas::Printed) => {
+            [right.u - here.u, right.v - here.u, below.u - here.u, below.v - here.u]
+        }
+        (Derivatives::Relief, Formulas::Meant) => [
+            (right.u + right.du) - (here.u + here.du),
+            (right.v + right.dv) - (here.v + here.dv),
+            (below.u + below.du) - (here.u + here.du),
+            (below.v + below.dv) - (here.v + here.dv),
+        ],
+        (Derivatives::Relief, Formulas::Printed) => [
+            right.u + right.du - here.u + here.du,
+            right.v + right.dv - here.u + here.du,
+            below.u + below.du - here.v + here.dv,
+            below.v + below.dv - here.v + here.dv,
+        ],
+    }
+}
+
+impl Differences {
+    /// The footprint of one lane around `center`; derivatives beyond 16 repeats are shortened.
+    #[must_use]
+    pub fn footprint(&self, center: &[PixelLanes; 2], lane: usize) -> Footprint {
+        let at = |lanes: &[PixelLanes; 2]| lanes.map(|l| l.as_array()[lane]);
+        let bounded = |[u, v]: [f32; 2]| {
+            let longest = u.abs().max(v.abs());
+            let scale = if longest > MAX_LENGTH { MAX_LENGTH / longest } else { 1.0 };
+            [u * scale, v * scale]
+        };
+        let center = at(center).map(|c| if c.abs() <= 1e6 { c } else { 0.0 });
+        Footprint { center, dx: bounded(at(&self.dx)), dy: bounded(at(&self.dy)) }
+    }
+}

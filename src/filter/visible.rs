@@ -1,0 +1,174 @@
+//! The paper's method: which texels of the ellipse the relief leaves visible.
+//!
+//! A texel is hidden when the ray from it to the eye meets higher relief. The ray leaves the texel's centre at its
+//! height and is followed against the displacement `D` (in texels), in steps of one texel along the longer axis of `D`,
+//! until it is above all relief; between two texels across the ray the height is interpolated. At one pixel the slope is
+//! the same for all texels, so a step of eight neighbouring rays reads eight neighbouring heights.
+
+use super::TexelSet;
+use super::texel_set::TexelRow;
+use crate::settings::Visibility;
+use crate::simd::{TexelLanes, high_half};
+use crate::texture::Level;
+
+/// How much higher than the ray, of 65535, relief must be to hide a texel: rounding alone must not.
+const TOLERANCE: f32 = 0.125;
+
+/// The heights of a level and the direction to the eye.
+#[derive(Clone, Copy, Debug)]
+pub struct Occlusion<'a> {
+    level: &'a Level,
+    /// Texels towards the eye per step; the longer component is 1 or -1.
+    step: [f32; 2],
+    runs_along_x: bool,
+    /// How much the ray rises per step, of 65535.
+    rise: f32,
+}
+
+impl<'a> Occlusion<'a> {
+    /// For the displacement (texels of the level down to the deepest relief) of a pixel's view ray.
+    #[must_use]
+    pub fn new(level: &'a Level, displacement: [f32; 2]) -> Self {
+        let [dx, dy] = displacement;
+        let runs_along_x = dx.abs() > dy.abs();
+        let length = dx.abs().max(dy.abs()).max(1e-3);
+        Self { level, step: [-dx / length, -dy / length], runs_along_x, rise: 65535.0 / length }
+    }
+
+    /// Which of the texels of `bits`, the first at column `x` of row `y`, the eye sees.
+    #[must_use]
+    pub fn visible(&self, x: i32, y: i32, bits: u8) -> u8 {
+        let mut height = self.heights(x as f32, y as f32);
+        let mut hidden = 0;
+        // A ray that starts at height 0 is above everything after this many steps.
+        let num_steps = (65535.0 / self.rise).ceil() as i32;
+        for i in 1..=num_steps {
+            height += self.rise;
+            let relief = self.heights_across(x, y, i as f32);
+            hidden |= relief.simd_gt(height + TOLERANCE).to_bitmask() as u8;
+            let open = bits & !hidden;
+            if open == 0 || (height.simd_lt(TexelLanes::splat(65535.0)).to_bitmask() as u8 & open) == 0 {
+                break;
+            }
+        }
+        bits & !hidden
+    }
+
+    /// The texel that covers a hidden one: where its ray first meets higher relief, the higher of the two texels across
+    /// the ray, so that a chain of coverers rises and ends. `None` for a visible texel.
+    #[must_use]
+    pub fn coverer(&self, x: i32, y: i32) -> Option<[i32; 2]> {
+        let mut height = self.heights(x as f32, y as f32).as_array()[0];
+        for i in 1..=(65535.0 / self.rise).ceil() as i32 {
+            height += self.rise;
+            let [near, far, part] = self.neighbours_across(x, y, i as f32).map(|lanes| lanes.as_array()[0]);
+            if near + (far - near) * part > height + TOLERANCE {
+                let [x, y] = [x, y].map(|c| c as f32);
+                let cell = [x + (i as f32 * self.step[0]).floor(), y + (i as f32 * self.step[1]).floor()];
+                let across = usize::from(self.runs_along_x);
+                let mut texel = cell.map(|c| c as i32);
+                texel[across] += i32::from(far > near);
+                return Some(texel);
+            }
+            if height >= 65535.0 {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// Heights, of 65535, of eight neighbouring texels.
+    fn heights(&self, x: f32, y: f32) -> TexelLanes {
+        let row = self.level.row(y as i32);
+        high_half(Level::run(row, self.level.run_start(x as i32) + self.level.stride()))
+    }
+
+    /// Heights under eight neighbouring rays after `i` steps, interpolated across the ray.
+    fn heights_across(&self, x: i32, y: i32, i: f32) -> TexelLanes {
+        let [near, far, part] = self.neighbours_across(x, y, i);
+        near + (far - near) * part
+    }
+
+    /// The heights on both sides of eight neighbouring rays after `i` steps, and how far these lie towards the second.
+    fn neighbours_across(&self, x: i32, y: i32, i: f32) -> [TexelLanes; 3] {
+        let place = [i * self.step[0], i * self.step[1]];
+        let cell = place.map(f32::floor);
+        let (x, y) = (x as f32 + cell[0], y as f32 + cell[1]);
+        let (far, part) = if self.runs_along_x {
+            (self.heights(x, y + 1.0), place[1] - cell[1])
+        } else {
+            (self.heights(x + 1.0, y), place[0] - cell[0])
+        };
+        [self.heights(x, y), far, TexelLanes::splat(part)]
+    }
+}
+
+/// Takes the hidden texels out of `set`, whose texels are the paper's T.
+pub fn remove_hidden(set: &mut TexelSet, occlusion: &Occlusion, how: Visibility) -> u64 {
+    match how {
+        Visibility::Exact => remove_exact(set, occlusion),
+        Visibility::TwoEnded => {
+            let TexelSet { rows, bits } = set;
+            rows.iter().map(|row| keep_ends(row, &mut bits[row.batches[0]..][..row.batches[1]], occlusion)).sum()
+        }
+        Visibility::Resolved => resolve(set, occlusion),
+    }
+}
+
+fn remove_exact(set: &mut TexelSet, occlusion: &Occlusion) -> u64 {
+    let mut num_tested = 0;
+    for row in &set.rows {
+        for (i, bits) in set.bits[row.batches[0]..][..row.batches[1]].iter_mut().enumerate() {
+            num_tested += u64::from(bits.count_ones());
+            *bits = occlusion.visible(row.x + 8 * i as i32, row.y, *bits);
+        }
+    }
+    num_tested
+}
+
+/// Keeps a row's texels from both ends, each until its first hidden one.
+fn keep_ends(row: &TexelRow, batches: &mut [u8], occlusion: &Occlusion) -> u64 {
+    let mut num_tested = 0;
+    let mut test = |i: usize, bits: u8| {
+        num_tested += u64::from(bits.count_ones());
+        bits & !occlusion.visible(row.x + 8 * i as i32, row.y, bits)
+    };
+    let first_hidden = batches.iter().enumerate().find_map(|(i, &bits)| {
+        let hidden = test(i, bits);
+        (hidden != 0).then(|| (i, hidden.trailing_zeros()))
+    });
+    let Some((low, low_bit)) = first_hidden else { return num_tested };
+    // At least the batch of the first hidden texel ends this scan.
+    let last_hidden = (low..batches.len()).rev().find_map(|i| {
+        let hidden = test(i, batches[i]);
+        (hidden != 0).then(|| (i, hidden.leading_zeros()))
+    });
+    let (high, high_zeros) = last_hidden.unwrap_or((low, 7 - low_bit));
+    for (i, bits) in batches.iter_mut().enumerate().take(high + 1).skip(low) {
+        let before = if i == low { (1_u32 << low_bit) - 1 } else { 0 };
+        let after = if i == high { !(0xff_u32 >> high_zeros) & 0xff } else { 0 };
+        *bits &= (before | after) as u8;
+    }
+    num_tested
+}
+
+/// Traces every texel and counts, in its place, the visible texel that covers it, if it lies in T; the set's bits are the
+/// buffer of counted texels, which keeps each from counting twice (the paper's Fig. 6).
+fn resolve(set: &mut TexelSet, occlusion: &Occlusion) -> u64 {
+    let inside = set.clone();
+    set.bits.fill(0);
+    let mut num_tested = 0;
+    for [x, y] in inside.iter() {
+        let mut texel = [x, y];
+        num_tested += 1;
+        // Each coverer is nearer to the eye, so the chain ends at a visible texel.
+        while let Some(coverer) = occlusion.coverer(texel[0], texel[1]) {
+            texel = coverer;
+        }
+        if inside.contains(texel[0], texel[1]) {
+            let (byte, bit) = set.place(texel[0], texel[1]).expect("a batch spans every texel of T");
+            set.bits[byte] |= bit;
+        }
+    }
+    num_tested
+}
