@@ -65,3 +65,9 @@ pub fn exp_negative(x: f32x8) -> f32x8 {
 pub fn as_signed(words: u32x8) -> i32x8 {
     wide::bytemuck::cast(words)
 }
+
+/// The same bits as unsigned numbers.
+#[must_use]
+pub fn as_unsigned(words: i32x8) -> u32x8 {
+    wide::bytemuck::cast(words)
+}

@@ -15,6 +15,9 @@ use crate::settings::Formulas;
 /// What is added to A and C, in square texels: four times the variance, 1/6, of bilinear interpolation between texels.
 pub const RECONSTRUCTION: f32 = 4.0 / 6.0;
 
+/// Least half axis in texels: what a magnified pixel covers is that much at least, so that no division overflows.
+const LEAST_AXIS: f32 = 1.0 / 256.0;
+
 /// The coefficients of formula (1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse {
@@ -44,17 +47,37 @@ impl Ellipse {
     /// The ellipse with the reconstruction kernel added and its anisotropy bounded. A printed F stays as printed.
     #[must_use]
     pub fn widened(self, max_anisotropy: f32, formulas: Formulas) -> Self {
-        let (a, b, c) = (self.a + RECONSTRUCTION, self.b, self.c + RECONSTRUCTION);
-        // Eigenvalues of [[c, -b/2], [-b/2, a]]: squares of the half axes.
+        let wide = Self { a: self.a + RECONSTRUCTION, c: self.c + RECONSTRUCTION, ..self };
+        let bounded = wide.bounded(max_anisotropy);
+        if formulas == Formulas::Meant { bounded } else { Self { f: self.f, ..bounded } }
+    }
+
+    /// The ellipse with its shorter axis widened to the longer over `max_anisotropy`, and at least to [`LEAST_AXIS`].
+    #[must_use]
+    pub fn bounded(self, max_anisotropy: f32) -> Self {
+        let Self { a, b, c, .. } = self;
+        let [short, long] = self.squared_axes();
+        let least = LEAST_AXIS * LEAST_AXIS;
+        let long = long.max(least);
+        let lift = ((long / (max_anisotropy * max_anisotropy)).max(least) - short).max(0.0);
+        // The square of the short axis grows along its own direction, the eigenvector of `short`; a circle all around.
+        let (a, b, c) = if long - short > 1e-6 * long {
+            let share = lift / (long - short);
+            (a + share * (long - a).max(0.0), b - share * b, c + share * (long - c).max(0.0))
+        } else {
+            (a + lift, b, c + lift)
+        };
+        Self { a, b, c, f: long * (short + lift) }
+    }
+
+    /// Squares of the shorter and the longer half axis in texels: the eigenvalues of `[[C, -B/2], [-B/2, A]]`.
+    #[must_use]
+    pub fn squared_axes(&self) -> [f32; 2] {
+        let Self { a, b, c, .. } = *self;
         let (mean, half) = ((a + c) * 0.5, ((a - c) * (a - c) * 0.25 + b * b * 0.25).sqrt());
         let long = mean + half;
-        let short = ((a * c - b * b * 0.25) / long).max(RECONSTRUCTION * 0.5);
-        let lift = (long / (max_anisotropy * max_anisotropy) - short).max(0.0);
-        // The square of the short axis grows along its own direction, the eigenvector of `short`.
-        let share = if half > 0.0 { lift / (2.0 * half) } else { 0.0 };
-        let (a, b, c) = (a + share * (long - a), b - share * b, c + share * (long - c));
-        let meant = (long * (short + lift)).max(f32::MIN_POSITIVE);
-        Self { a, b, c, f: if formulas == Formulas::Meant { meant } else { self.f } }
+        // The determinant over the longer one, which does not cancel as `mean - half` does.
+        [((a * c - b * b * 0.25) / long.max(f32::MIN_POSITIVE)).max(0.0), long]
     }
 
     /// Area in square texels.

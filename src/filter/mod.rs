@@ -6,6 +6,7 @@
 mod ellipse;
 pub mod ewa;
 mod footprint;
+pub mod horizon;
 pub mod isotropic;
 pub mod parallax;
 mod texel_set;

@@ -5,12 +5,15 @@
 //! opened; in a cell the crossing of the ray with the bilinear patch, a quadratic in t, is solved. So no feature is
 //! stepped over, however thin. Eight rays are traced at once; a lane is a pixel.
 
-use super::{HeightField, finite};
+use super::{HeightField, MAX_SLOPE, finite};
 use crate::simd::PixelLanes;
 
 /// Most steps of a ray. A walk of 64 repeats over a map of any size that opens every node takes fewer in practice;
 /// the bound makes the time of a hostile input finite, and the ray then ends where it is.
 const MAX_STEPS: usize = 1 << 14;
+
+/// Most patterns from the first that a ray over a clamped map starts at: all beyond looks like its edge.
+const FARTHEST: f32 = 128.0;
 
 /// Part of a texel that a ray is moved past a node's edge, so that rounding cannot keep it inside.
 const NUDGE: f32 = 1.0 / 1024.0;
@@ -21,13 +24,14 @@ pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelL
     let [nu, nv] = field.texels_per_repeat;
     // Whole repeats are taken off first, so that far tiles keep their precision.
     let start = |b: PixelLanes, n: f32, size: i32| {
-        let span = size as f32 / n;
-        let b = finite(b * (1.0 / span));
-        (b - b.floor()) * (span * n) - 0.5
+        let patterns = finite(b * (n / size as f32));
+        let whole = if field.is_clamped { PixelLanes::ZERO } else { patterns.floor() };
+        (patterns - whole).fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST)) * size as f32 - 0.5
     };
+    let bounded = |d: PixelLanes| finite(d).fast_max(PixelLanes::splat(-MAX_SLOPE)).fast_min(PixelLanes::splat(MAX_SLOPE));
     let mut rays = Rays {
         start: [start(base[0], nu, field.size[0]), start(base[1], nv, field.size[1])],
-        step: [displacement[0] * nu, displacement[1] * nv],
+        step: [bounded(displacement[0]) * nu, bounded(displacement[1]) * nv],
         depth: PixelLanes::ZERO,
         level: [field.num_levels() - 1; 8],
         is_done: 0,
@@ -66,22 +70,24 @@ impl Rays {
             folded[lane] = [field.fold(0, x), field.fold(1, y)];
             nodes.set(lane, field, [x, y], folded[lane], level);
         }
-        let leave = self.depth_at_exit(&place, &nodes);
+        let [exit, leave] = [0.0, NUDGE].map(|nudge| self.depth_at_exit(&place, &nodes, nudge));
         let height = PixelLanes::new(nodes.max_height) * (1.0 / 65535.0);
         // The ray descends, so it is lowest where it leaves the node.
         let is_above = (PixelLanes::ONE - leave).simd_gt(height).to_bitmask();
         let hit = if (nodes.is_cell & !self.is_done) != 0 { self.cell_hit(field, &place, &cell, &folded) } else { leave };
-        self.settle(field, leave, hit, is_above, nodes.is_cell);
+        // A crossing beyond the edge is the next node's.
+        let is_hit = hit.simd_le(exit).to_bitmask() & nodes.is_cell;
+        self.settle(field, [leave, hit], is_hit, nodes.is_cell | is_above);
     }
 
-    /// Depth at which the rays leave their nodes, a nudge beyond.
-    fn depth_at_exit(&self, place: &[PixelLanes; 2], nodes: &Nodes) -> PixelLanes {
+    /// Depth at which the rays are a nudge beyond their nodes.
+    fn depth_at_exit(&self, place: &[PixelLanes; 2], nodes: &Nodes, nudge: f32) -> PixelLanes {
         let mut advance = PixelLanes::splat(2.0);
         for axis in 0..2 {
             let step = self.step[axis];
             let forwards = step.simd_gt(PixelLanes::ZERO);
-            let low = PixelLanes::new(nodes.low[axis]) - place[axis] - NUDGE;
-            let high = PixelLanes::new(nodes.high[axis]) - place[axis] + NUDGE;
+            let low = PixelLanes::new(nodes.low[axis]) - place[axis] - nudge;
+            let high = PixelLanes::new(nodes.high[axis]) - place[axis] + nudge;
             let distance = forwards.select(high, low);
             let is_moving = step.abs().simd_gt(PixelLanes::splat(1e-12));
             let depth = is_moving.select(distance / is_moving.select(step, PixelLanes::ONE), PixelLanes::splat(2.0));
@@ -111,8 +117,7 @@ impl Rays {
     }
 
     /// Takes the new depths over and chooses each ray's next level.
-    fn settle(&mut self, field: &HeightField, leave: PixelLanes, hit: PixelLanes, is_above: u32, is_cell: u32) {
-        let is_hit = hit.simd_le(leave).to_bitmask() & is_cell;
+    fn settle(&mut self, field: &HeightField, [leave, hit]: [PixelLanes; 2], is_hit: u32, is_passed: u32) {
         let (leave, hit, mut depth) = (leave.to_array(), hit.to_array(), self.depth.to_array());
         for lane in 0..8 {
             let bit = 1 << lane;
@@ -122,7 +127,7 @@ impl Rays {
             if is_hit & bit != 0 {
                 depth[lane] = hit[lane];
                 self.is_done |= bit;
-            } else if (is_cell | is_above) & bit != 0 {
+            } else if is_passed & bit != 0 {
                 depth[lane] = leave[lane];
                 self.level[lane] = (self.level[lane] + 1).min(field.num_levels() - 1);
                 // At full depth every height is met.

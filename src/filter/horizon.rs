@@ -1,0 +1,282 @@
+//! The floating horizon filter: the visible relief of a footprint in one sweep.
+//!
+//! A texel at `t` and depth `d` is seen over the base coordinate `t - d D`, with the displacement `D` down to the deepest
+//! relief. Along a line in the direction of `D`, walked from its near end, the eye sees the part of the relief where the
+//! projected place makes a new record, and nothing else. So with the places `p_i` of the line's texels:
+//!
+//! ```text
+//! M = entry of the line into the ellipse of formula (2)
+//! for each texel i:  w_i = G(min(p_i, exit)) - G(M) if that is positive;  M = max(M, p_i);  stop when M >= exit
+//! ```
+//!
+//! where `G` is the integral of the kernel `exp(-2 r^2)` along the line, so the weights of a line sum to its share of the
+//! ellipse whatever the relief. The segment between two texels is linear: its colour is taken at the middle of its
+//! visible part. (The floating horizon: a hidden-surface algorithm for functions of two variables, here run inside a
+//! texture footprint; the weight is exact where the classic algorithm draws lines.)
+//!
+//! Rows run across the longer axis of `D`, on a transposed copy of the texels where that is u. The lines are the lanes:
+//! in the sheared frame `xi = x - e y`, `e = D_x / D_y`, a line is a column, and with `eta` the row from the middle
+//!
+//! ```text
+//! r^2 = A' xi^2 + B' xi eta + C' eta^2 = (A' - B'^2 / 4C') xi^2 + z^2,   z = sqrt(C') (eta + B' xi / 2C')
+//! ```
+//!
+//! so that every line has one Gaussian in `z`, its own middle, and the weight `exp(-2 (A' - B'^2 / 4C') xi^2)`.
+
+use super::{Ellipse, Filtered, Footprint, isotropic};
+use crate::settings::{Formulas, Settings};
+use crate::shade::LocalLights;
+use crate::simd::{TexelLanes, exp_negative, high_half, low_half, sum};
+use crate::texture::{Level, Surface};
+use glam::Vec3;
+
+/// Most rows of a sweep; a longer one takes a coarser level. Bounds the time of a pixel for any input.
+pub const MAX_ROWS: f32 = 512.0;
+
+/// Footprints narrower than this many texels take eight lines less than a texel apart, interpolated between texels;
+/// eight such lines and their neighbours span at most eight texels.
+const NARROW: f32 = 6.5;
+
+/// Displacements shorter than this many texels do not hide anything that a texel could show.
+const FLAT: f32 = 1.0 / 64.0;
+
+/// The mean of the visible texels of a footprint whose centre is the base coordinate, and the number of rows swept.
+#[must_use]
+pub fn visible_mean(
+    surface: &Surface,
+    footprint: &Footprint,
+    displacement: [f32; 2],
+    settings: &Settings,
+    lights: Option<&LocalLights>,
+) -> (Filtered, u64) {
+    let index = choose_level(surface, footprint, displacement, settings);
+    let texels = surface.texels_per_repeat(index);
+    let ellipse = widened(footprint, texels, settings);
+    let displacement = [displacement[0] * texels[0], displacement[1] * texels[1]];
+    let center = [footprint.center[0] * texels[0] - 0.5, footprint.center[1] * texels[1] - 0.5];
+    let runs_along_u = if displacement[0].abs().max(displacement[1].abs()) < FLAT {
+        ellipse.a < ellipse.c
+    } else {
+        displacement[0].abs() > displacement[1].abs()
+    };
+    let sweep = if runs_along_u {
+        let turned = Ellipse { a: ellipse.c, c: ellipse.a, ..ellipse };
+        Sweep::new(&surface.transposed[index], &turned, [center[1], center[0]], [displacement[1], displacement[0]])
+    } else {
+        Sweep::new(&surface.levels[index], &ellipse, center, displacement)
+    };
+    let (mean, num_rows) = sweep.run(lights);
+    (mean.unwrap_or_else(|| isotropic::bilinear(surface, index, footprint.center)), num_rows)
+}
+
+fn widened(footprint: &Footprint, texels: [f32; 2], settings: &Settings) -> Ellipse {
+    let ellipse = Ellipse::new(footprint, texels, Formulas::Meant);
+    ellipse.bounded(settings.max_anisotropy)
+}
+
+/// The finest level on which the footprint is at most `lines` texels across its shorter axis and its sweep short enough.
+fn choose_level(surface: &Surface, footprint: &Footprint, displacement: [f32; 2], settings: &Settings) -> usize {
+    let last = surface.levels.len() - 1;
+    let fits = |level: &usize| {
+        let texels = surface.texels_per_repeat(*level);
+        let ellipse = widened(footprint, texels, settings);
+        let [short, long] = ellipse.squared_axes().map(f32::sqrt);
+        let walk = (displacement[0] * texels[0]).abs().max((displacement[1] * texels[1]).abs());
+        2.0 * short <= settings.lines as f32 && 2.0 * long + walk <= MAX_ROWS
+    };
+    (0..last).find(fits).unwrap_or(last)
+}
+
+/// A sweep over one level: rows along y, lines as lanes.
+struct Sweep<'a> {
+    level: &'a Level,
+    /// Middle of the ellipse; texel centres lie at whole numbers.
+    center: [f32; 2],
+    /// Texels along y down to the deepest relief, and texels along x per row.
+    depth: f32,
+    shear: f32,
+    /// Half the width over xi and half the height over eta of the ellipse.
+    half: [f32; 2],
+    /// `sqrt(C')`, `B' / 2C'`, `A' - B'^2 / 4C'`.
+    along: f32,
+    skew: f32,
+    across: f32,
+}
+
+impl<'a> Sweep<'a> {
+    fn new(level: &'a Level, ellipse: &Ellipse, center: [f32; 2], displacement: [f32; 2]) -> Self {
+        let [dx, dy] = displacement;
+        let is_flat = dy.abs() < FLAT;
+        let (depth, e) = if is_flat { (0.0, 0.0) } else { (dy, dx / dy) };
+        let Ellipse { a, b, c, f } = *ellipse;
+        let (a1, b1, c1) = (a / f, (2.0 * a * e + b) / f, ((a * e + b) * e + c) / f);
+        let across = (a1 - b1 * b1 / (4.0 * c1)).max(1e-12);
+        let half = [1.0 / across.sqrt(), 1.0 / (c1 - b1 * b1 / (4.0 * a1)).max(1e-12).sqrt()];
+        Self { level, center, depth, shear: e, half, along: c1.sqrt(), skew: b1 / (2.0 * c1), across }
+    }
+
+    fn run(&self, lights: Option<&LocalLights>) -> (Option<Filtered>, u64) {
+        let width = 2.0 * self.half[0];
+        let mut total = Totals::default();
+        let mut num_rows = 0;
+        if width < NARROW {
+            let spacing = width / 8.0;
+            num_rows += self.lines::<true>(-self.half[0] + 0.5 * spacing, spacing, lights, &mut total);
+        } else {
+            let num_blocks = (width / 8.0).ceil() as i32;
+            let first = -(num_blocks * 4) as f32 + 0.5;
+            for block in 0..num_blocks {
+                num_rows += self.lines::<false>(first + (8 * block) as f32, 1.0, lights, &mut total);
+            }
+        }
+        (total.mean(lights.is_some()), num_rows)
+    }
+
+    /// Sweeps eight lines, the first at `xi`.
+    fn lines<const NARROW: bool>(&self, first: f32, spacing: f32, lights: Option<&LocalLights>, total: &mut Totals) -> u64 {
+        let index = TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        let xi = index * spacing + first;
+        let outside = xi * xi * self.across;
+        let end = (TexelLanes::ONE - outside).fast_max(TexelLanes::ZERO).sqrt();
+        let toward = if self.depth < 0.0 { -1.0 } else { 1.0 };
+        let rise = self.along * self.depth.abs();
+        // z of the polygon at the row of the middle, seen in the walking direction.
+        let middle = xi * (self.skew * self.along * toward);
+        let mut lines = Lines {
+            horizon: -end,
+            weight: integral(-end),
+            previous: TexelLanes::splat(-1e9),
+            texel: [TexelLanes::ZERO; 6],
+            sums: Totals::default(),
+        };
+        let start_weight = lines.weight;
+        let y0 = self.center[1];
+        // No relief of the first row can be seen within the ellipse: the record begins at its edge.
+        let first_row = (toward * y0 - self.half[1]).floor() as i32 - 1;
+        let num_rows = (2.0 * self.half[1] + self.depth.abs()).ceil() as i32 + 3;
+        let mut swept = 0;
+        for i in 0..num_rows {
+            let y = toward * (first_row + i) as f32;
+            let eta = y - y0;
+            let x = self.center[0] + self.shear * eta + first;
+            let (texel, height) = self.fetch::<NARROW>(x, y as i32, spacing, lights.is_some());
+            let z = middle + self.along * toward * eta - (TexelLanes::ONE - height) * rise;
+            lines.add(z, end, texel, lights);
+            swept += 1;
+            if lines.horizon.simd_ge(end).all() {
+                break;
+            }
+        }
+        let share = exp_negative((outside + outside).fast_min(TexelLanes::splat(2.0)));
+        let share = outside.simd_lt(TexelLanes::ONE).select(share, TexelLanes::ZERO);
+        total.add(&lines.sums, share, lines.weight - start_weight);
+        swept
+    }
+
+    /// Colour (and normal) and height of the eight lines in row `y`, the first line at `x`.
+    fn fetch<const NARROW: bool>(&self, x: f32, y: i32, spacing: f32, lit: bool) -> ([TexelLanes; 6], TexelLanes) {
+        let row = self.level.row(y);
+        let stride = self.level.stride();
+        let index = TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        let left = x.floor();
+        let start = self.level.run_start(left as i32);
+        let place = index * spacing + (x - left);
+        let cell = if NARROW { place.floor() } else { index };
+        let part = place - cell;
+        let pick = |plane: usize, far: u32| {
+            if NARROW {
+                let lanes: crate::simd::u32x8 = crate::simd::as_unsigned(cell.fast_trunc_int());
+                Level::run(row, start + plane * stride).shuffle(lanes + crate::simd::u32x8::splat(far))
+            } else {
+                Level::run(row, start + plane * stride + far as usize)
+            }
+        };
+        let mix = |near: TexelLanes, far: TexelLanes| near + (far - near) * part;
+        let [rg0, rg1, bh0, bh1] = [pick(0, 0), pick(0, 1), pick(1, 0), pick(1, 1)];
+        let mut texel = [TexelLanes::ZERO; 6];
+        texel[0] = mix(low_half(rg0), low_half(rg1));
+        texel[1] = mix(high_half(rg0), high_half(rg1));
+        texel[2] = mix(low_half(bh0), low_half(bh1));
+        if lit && self.level.has_normals() {
+            let (near, far) = (super::unpack_normals(pick(2, 0)), super::unpack_normals(pick(2, 1)));
+            (0..3).for_each(|i| texel[3 + i] = mix(near[i], far[i]));
+        }
+        (texel, mix(high_half(bh0), high_half(bh1)) * (1.0 / 65535.0))
+    }
+}
+
+/// `G(z)`, the integral of `exp(-2 z^2)` from 0, for z within -1 to 1: the integral of the even polynomial of degree 8
+/// that is nearest to the kernel, off by at most 0.0002.
+fn integral(z: TexelLanes) -> TexelLanes {
+    let s = z * z;
+    ((((s * 0.028_880_1 - 0.148_824_7) * s + 0.381_363_6) * s - 0.663_076_2) * s + 0.999_799) * z
+}
+
+/// Eight lines on their way.
+struct Lines {
+    /// M, the record so far, and `G(M)`.
+    horizon: TexelLanes,
+    weight: TexelLanes,
+    /// The last row's place and texel.
+    previous: TexelLanes,
+    texel: [TexelLanes; 6],
+    sums: Totals,
+}
+
+impl Lines {
+    fn add(&mut self, z: TexelLanes, end: TexelLanes, texel: [TexelLanes; 6], lights: Option<&LocalLights>) {
+        let record = z.fast_min(end).fast_max(self.horizon);
+        let weight = integral(record);
+        let visible = weight - self.weight;
+        // Where the middle of the visible part lies between the last texel (0) and this one (1).
+        let length = (z - self.previous).fast_max(TexelLanes::splat(1e-6));
+        let middle = ((record + self.horizon) * 0.5 - self.previous) / length;
+        let middle = middle.fast_min(TexelLanes::ONE).fast_max(TexelLanes::ZERO);
+        let at = |i: usize| self.texel[i] + (texel[i] - self.texel[i]) * middle;
+        let mut color = [at(0), at(1), at(2)];
+        self.sums.weight += visible;
+        if let Some(lights) = lights {
+            let normal = [at(3), at(4), at(5)];
+            let light = diffuse(lights, &normal);
+            (0..3).for_each(|i| color[i] *= light[i]);
+            (0..3).for_each(|i| self.sums.normal[i] += normal[i] * visible);
+        }
+        (0..3).for_each(|i| self.sums.color[i] += color[i] * visible);
+        (self.horizon, self.weight, self.previous, self.texel) = (record, weight, z, texel);
+    }
+}
+
+/// [`LocalLights::diffuse`] of eight normals.
+fn diffuse(lights: &LocalLights, normal: &[TexelLanes; 3]) -> [TexelLanes; 3] {
+    let mut sums = lights.ambient.to_array().map(TexelLanes::splat);
+    for (to_light, intensity) in &lights.lights {
+        let Vec3 { x, y, z } = *to_light;
+        let cosine = (normal[0] * x + normal[1] * y + normal[2] * z).fast_max(TexelLanes::ZERO);
+        (0..3).for_each(|i| sums[i] += cosine * intensity[i]);
+    }
+    sums
+}
+
+/// Weighted sums.
+#[derive(Default)]
+struct Totals {
+    weight: TexelLanes,
+    color: [TexelLanes; 3],
+    normal: [TexelLanes; 3],
+}
+
+impl Totals {
+    /// Adds the sums of eight lines, each times its share.
+    fn add(&mut self, lines: &Self, share: TexelLanes, weight: TexelLanes) {
+        self.weight += weight * share;
+        (0..3).for_each(|i| self.color[i] += lines.color[i] * share);
+        (0..3).for_each(|i| self.normal[i] += lines.normal[i] * share);
+    }
+
+    fn mean(&self, lit: bool) -> Option<Filtered> {
+        let weight = sum(self.weight);
+        let mean = |lanes: [TexelLanes; 3]| lanes.map(|lanes| sum(lanes) / weight);
+        let normal = if lit { mean(self.normal) } else { [0.0, 0.0, 1.0] };
+        (weight > 0.0).then(|| Filtered { color: mean(self.color), normal })
+    }
+}

@@ -1,0 +1,224 @@
+//! The colour of two quads: view slope, hits, footprints, texels, light.
+
+use crate::filter::{self, Filtered, TexelSet, horizon, isotropic, parallax, truth};
+use crate::raster::{LitPlanes, QuadPair};
+use crate::relief::{HeightField, displacement, march};
+use crate::scene::{Material, Scene};
+use crate::settings::{Derivatives, Filter, Formulas, Lighting, Settings};
+use crate::shade::{LocalLights, SurfacePoint};
+use crate::simd::PixelLanes;
+use crate::texture::Surface;
+use glam::Vec3;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Shades quads of a frame.
+pub(super) struct QuadShader<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    fields: &'a [Option<Arc<HeightField>>],
+    kernel: &'a truth::Kernel,
+    offsets: &'a [[f32; 2]],
+    texels: [AtomicU64; 2],
+}
+
+/// What all pixels of a pair have in common.
+struct Ground<'a> {
+    pair: &'a QuadPair<'a>,
+    material: &'a Material,
+    surface: &'a Surface,
+    field: Option<&'a HeightField>,
+}
+
+impl<'a> QuadShader<'a> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        settings: &'a Settings,
+        fields: &'a [Option<Arc<HeightField>>],
+        (kernel, offsets): (&'a truth::Kernel, &'a [[f32; 2]]),
+    ) -> Self {
+        Self { scene, settings, fields, kernel, offsets, texels: Default::default() }
+    }
+
+    /// Texels tested and texels averaged so far.
+    pub(super) fn num_texels(&self) -> [u64; 2] {
+        self.texels.each_ref().map(|num| num.load(Ordering::Relaxed))
+    }
+
+    /// The linear colour of the eight pixels; helper lanes are 0.
+    pub(super) fn shade(&self, pair: &QuadPair) -> [PixelLanes; 3] {
+        let material = &self.scene.materials[pair.material];
+        let colors = match &material.surface {
+            None => each_covered(pair, |lane| self.plain(pair, material, lane)),
+            Some(surface) => {
+                let field = self.fields[pair.material].as_deref().filter(|_| self.settings.parallax);
+                self.textured(&Ground { pair, material, surface, field })
+            }
+        };
+        [0, 1, 2].map(|c| PixelLanes::new(colors.map(|color| color[c])))
+    }
+
+    fn plain(&self, pair: &QuadPair, material: &Material, lane: usize) -> Vec3 {
+        let Some(lights) = self.lights_at(pair, lane, pixel_center(pair, lane)) else { return material.diffuse };
+        material.diffuse * lights.diffuse(Vec3::Z) + lights.specular(Vec3::Z, material)
+    }
+
+    fn textured(&self, ground: &Ground) -> [Vec3; 8] {
+        let depth = ground.field.map_or(0.0, |_| ground.surface.relief_depth);
+        let reach = displacement(&ground.pair.view, depth);
+        match self.settings.filter {
+            Filter::Truth => each_covered(ground.pair, |lane| self.truth(ground, lane)),
+            Filter::Parallax => self.parallax(ground),
+            Filter::Horizon => self.horizon(ground, &reach),
+            _ => self.at_hits(ground, &reach),
+        }
+    }
+
+    /// The filters that put the footprint around the hit.
+    fn at_hits(&self, ground: &Ground, reach: &[PixelLanes; 2]) -> [Vec3; 8] {
+        let Ground { pair, surface, field, .. } = *ground;
+        let depth = field.map_or(PixelLanes::ZERO, |field| march(field, &pair.uv, reach));
+        let offset = [reach[0] * depth, reach[1] * depth];
+        let place = [pair.uv[0] + offset[0], pair.uv[1] + offset[1]];
+        let which = (self.settings.derivatives, self.settings.formulas);
+        let differences = filter::differences(&pair.uv, &offset, which);
+        let mut set = TexelSet::default();
+        let mut num_texels = [0; 2];
+        let colors = each_covered(pair, |lane| {
+            let footprint = differences.footprint(&place, lane);
+            let texel = match self.settings.filter {
+                Filter::Nearest => isotropic::nearest(surface, footprint.center),
+                Filter::Bilinear => isotropic::bilinear(surface, 0, footprint.center),
+                Filter::Trilinear => {
+                    isotropic::trilinear(surface, footprint.center, isotropic::longest_side(surface, &footprint))
+                }
+                _ => {
+                    let hides = field.is_some() && self.settings.filter == Filter::Visible;
+                    let reach = hides.then(|| reach.map(|lanes| lanes.as_array()[lane]));
+                    let (mean, counts) = filter::ellipse_mean(surface, &footprint, reach, self.settings, &mut set);
+                    num_texels = [num_texels[0] + counts[0], num_texels[1] + counts[1]];
+                    mean
+                }
+            };
+            self.lit(ground, lane, &texel)
+        });
+        self.count(num_texels);
+        colors
+    }
+
+    fn horizon(&self, ground: &Ground, reach: &[PixelLanes; 2]) -> [Vec3; 8] {
+        let Ground { pair, surface, material, .. } = *ground;
+        let none = [PixelLanes::ZERO; 2];
+        let differences = filter::differences(&pair.uv, &none, (Derivatives::Flat, Formulas::Meant));
+        let mut num_rows = 0;
+        let colors = each_covered(pair, |lane| {
+            let footprint = differences.footprint(&pair.uv, lane);
+            let reach = reach.map(|lanes| lanes.as_array()[lane]);
+            let lights = self.lights_at(pair, lane, pixel_center(pair, lane));
+            let (texel, rows) = horizon::visible_mean(surface, &footprint, reach, self.settings, lights.as_ref());
+            num_rows += rows;
+            // Lambert is in the sums already; the highlight is that of the mean normal.
+            let specular = lights.map_or(Vec3::ZERO, |lights| lights.specular(Vec3::from(texel.normal), material));
+            albedo(ground, &texel) + specular
+        });
+        self.count([num_rows, 0]);
+        colors
+    }
+
+    fn parallax(&self, ground: &Ground) -> [Vec3; 8] {
+        let Ground { pair, surface, field, .. } = *ground;
+        let none = [PixelLanes::ZERO; 2];
+        let differences = filter::differences(&pair.uv, &none, (Derivatives::Flat, Formulas::Meant));
+        let depth = field.map_or(0.0, |_| surface.relief_depth);
+        each_covered(pair, |lane| {
+            let footprint = differences.footprint(&pair.uv, lane);
+            let size = parallax::texel_size(surface, &footprint, self.settings.samples);
+            let [x, y] = pixel_center(pair, lane);
+            let sum = self.offsets.iter().fold(Vec3::ZERO, |sum, offset| {
+                let (x, y) = (PixelLanes::splat(x + offset[0]), PixelLanes::splat(y + offset[1]));
+                let (uv, view) = pair.planes[lane / 4].at(x, y);
+                let reach = displacement(&view, depth).map(|lanes| lanes.as_array()[0]);
+                let base = uv.map(|lanes| crate::relief::finite(lanes).as_array()[0]);
+                sum + self.lit(ground, lane, &parallax::trace(surface, base, reach, size))
+            });
+            sum / self.offsets.len() as f32
+        })
+    }
+
+    /// Every sample a ray of its own, shaded on its own.
+    fn truth(&self, ground: &Ground, lane: usize) -> Vec3 {
+        let Ground { pair, surface, field, .. } = *ground;
+        let planes = pair.planes[lane / 4];
+        let [center_x, center_y] = pixel_center(pair, lane);
+        let depth = field.map_or(0.0, |_| surface.relief_depth);
+        let (mut sum, mut num) = (Vec3::ZERO, 0.0);
+        for [dx, dy, counts] in &self.kernel.groups {
+            let (x, y) = (*dx + center_x, *dy + center_y);
+            let (uv, view) = planes.at(x, y);
+            let reach = displacement(&view, depth);
+            let hit = field.map_or(PixelLanes::ZERO, |field| march(field, &uv, &reach));
+            let place = [uv[0] + reach[0] * hit, uv[1] + reach[1] * hit];
+            let [a, b, c] = planes.inverse_w;
+            let inverse_w = x * a + y * b + c;
+            for i in 0..8 {
+                let place = place.map(|lanes| lanes.as_array()[i]);
+                // Beyond the horizon there is no surface to sample.
+                let is_sample = counts.as_array()[i] > 0.0 && inverse_w.as_array()[i] > 0.0;
+                if is_sample && place.iter().all(|c| c.abs() < 1e6) {
+                    let texel = truth::sample(surface, place);
+                    sum += self.lit_at(ground, lane, [x.as_array()[i], y.as_array()[i]], &texel);
+                    num += 1.0;
+                }
+            }
+        }
+        sum / f32::max(num, 1.0)
+    }
+
+    fn count(&self, num_texels: [u64; 2]) {
+        self.texels.iter().zip(num_texels).for_each(|(total, num)| {
+            total.fetch_add(num, Ordering::Relaxed);
+        });
+    }
+
+    fn lit(&self, ground: &Ground, lane: usize, texel: &Filtered) -> Vec3 {
+        self.lit_at(ground, lane, pixel_center(ground.pair, lane), texel)
+    }
+
+    /// The colour of a filtered texel seen at a place on the screen.
+    fn lit_at(&self, ground: &Ground, lane: usize, screen: [f32; 2], texel: &Filtered) -> Vec3 {
+        let color = albedo(ground, texel);
+        let Some(lights) = self.lights_at(ground.pair, lane, screen) else { return color };
+        let normal = Vec3::from(texel.normal);
+        color * lights.diffuse(normal) + lights.specular(normal, ground.material)
+    }
+
+    /// The lights at a place on the screen, if there is lighting.
+    fn lights_at(&self, pair: &QuadPair, lane: usize, [x, y]: [f32; 2]) -> Option<LocalLights> {
+        let planes = pair.planes[lane / 4];
+        let lit = planes.lit.as_deref().filter(|_| self.settings.lighting == Lighting::Lit)?;
+        let [a, b, c] = planes.inverse_w;
+        let w = 1.0 / (a * x + b * y + c);
+        let at = |planes: &[crate::raster::Plane; 3]| Vec3::from(planes.map(|[a, b, c]| (a * x + b * y + c) * w));
+        let LitPlanes { position, normal, tangent_u, tangent_v } = lit;
+        let point = SurfacePoint { position: at(position), normal: at(normal), tangents: [at(tangent_u), at(tangent_v)] };
+        Some(LocalLights::at(&point, self.scene.camera.eye, &self.scene.lights, self.scene.ambient))
+    }
+}
+
+fn albedo(ground: &Ground, texel: &Filtered) -> Vec3 {
+    Vec3::from(texel.color) * ground.material.diffuse * (ground.surface.color_scale / 65535.0)
+}
+
+fn each_covered(pair: &QuadPair, mut color: impl FnMut(usize) -> Vec3) -> [Vec3; 8] {
+    let mut colors = [Vec3::ZERO; 8];
+    for (lane, out) in colors.iter_mut().enumerate().filter(|(lane, _)| pair.coverage[*lane] > 0) {
+        *out = color(lane);
+    }
+    colors
+}
+
+/// Where a lane's pixel has its centre on the screen.
+fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
+    let [x, y] = pair.origin[lane / 4];
+    [(x + (lane as i32 & 1)) as f32 + 0.5, (y + (lane as i32 >> 1 & 1)) as f32 + 0.5]
+}
