@@ -71,3 +71,15 @@ pub fn as_signed(words: u32x8) -> i32x8 {
 pub fn as_unsigned(words: i32x8) -> u32x8 {
     wide::bytemuck::cast(words)
 }
+
+/// The lanes of a comparison, all bits or none, as a mask of whole numbers.
+#[must_use]
+pub fn mask(comparison: f32x8) -> i32x8 {
+    wide::bytemuck::cast(comparison)
+}
+
+/// A mask of whole numbers as the lanes of a comparison.
+#[must_use]
+pub fn lanes(mask: i32x8) -> f32x8 {
+    wide::bytemuck::cast(mask)
+}

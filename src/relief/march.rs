@@ -6,7 +6,7 @@
 //! stepped over, however thin. Eight rays are traced at once; a lane is a pixel.
 
 use super::{HeightField, MAX_SLOPE, finite};
-use crate::simd::PixelLanes;
+use crate::simd::{PixelLanes, as_unsigned, i32x8, lanes, mask};
 
 /// Most steps of a ray. A walk of 64 repeats over a map of any size that opens every node takes fewer in practice;
 /// the bound makes the time of a hostile input finite, and the ray then ends where it is.
@@ -29,29 +29,48 @@ pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelL
         (patterns - whole).fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST)) * size as f32 - 0.5
     };
     let bounded = |d: PixelLanes| finite(d).fast_max(PixelLanes::splat(-MAX_SLOPE)).fast_min(PixelLanes::splat(MAX_SLOPE));
+    let step = [bounded(displacement[0]) * nu, bounded(displacement[1]) * nv];
+    let level = field.first_level(longest(&step));
     let mut rays = Rays {
         start: [start(base[0], nu, field.size[0]), start(base[1], nv, field.size[1])],
-        step: [bounded(displacement[0]) * nu, bounded(displacement[1]) * nv],
+        step,
+        inverse: step.map(|s| PixelLanes::ONE / s.abs().simd_gt(PixelLanes::splat(1e-9)).select(s, PixelLanes::splat(1e-9))),
         depth: PixelLanes::ZERO,
-        level: [field.num_levels() - 1; 8],
-        is_done: 0,
+        level: i32x8::splat(level),
+        parent: [i32x8::splat(i32::MIN); 2],
+        is_done: i32x8::splat(0),
     };
     for _ in 0..MAX_STEPS {
         rays.advance(field);
-        if rays.is_done == 0xff {
+        if rays.is_done.all() {
             break;
         }
     }
     rays.depth.fast_min(PixelLanes::ONE)
 }
 
+fn longest(step: &[PixelLanes; 2]) -> f32 {
+    step[0].abs().fast_max(step[1].abs()).to_array().into_iter().fold(0.0, f32::max)
+}
+
 /// Eight rays on their way. Places are in cells: texel centres lie at whole numbers.
 struct Rays {
     start: [PixelLanes; 2],
     step: [PixelLanes; 2],
+    inverse: [PixelLanes; 2],
     depth: PixelLanes,
-    level: [i32; 8],
-    is_done: u32,
+    level: i32x8,
+    /// The parents of the nodes just passed; no node where the ray did not move on.
+    parent: [i32x8; 2],
+    is_done: i32x8,
+}
+
+/// Where eight rays are: the cell, the same folded into the stored pattern, and the edges of its node.
+struct Nodes {
+    cell: [PixelLanes; 2],
+    folded: [i32x8; 2],
+    low: [PixelLanes; 2],
+    high: [PixelLanes; 2],
 }
 
 impl Rays {
@@ -59,85 +78,110 @@ impl Rays {
     fn advance(&mut self, field: &HeightField) {
         let place = [self.start[0] + self.step[0] * self.depth, self.start[1] + self.step[1] * self.depth];
         let cell = place.map(PixelLanes::floor);
-        let (xs, ys) = (cell[0].to_array(), cell[1].to_array());
-        let mut nodes = Nodes::default();
-        let mut folded = [[0; 2]; 8];
-        for lane in 0..8 {
-            if self.is_done >> lane & 1 == 1 {
-                continue;
-            }
-            let (x, y, level) = (xs[lane] as i32, ys[lane] as i32, self.level[lane]);
-            folded[lane] = [field.fold(0, x), field.fold(1, y)];
-            nodes.set(lane, field, [x, y], folded[lane], level);
-        }
+        let folded = [0, 1].map(|axis| fold(field, axis, cell[axis]));
+        self.climb(field, &folded);
+        let nodes = self.nodes(field, cell, folded);
+        let is_cell = self.level.simd_eq(i32x8::splat(0));
+        let heights = self.node_heights(field, &nodes.folded);
         let [exit, leave] = [0.0, NUDGE].map(|nudge| self.depth_at_exit(&place, &nodes, nudge));
-        let height = PixelLanes::new(nodes.max_height) * (1.0 / 65535.0);
         // The ray descends, so it is lowest where it leaves the node.
-        let is_above = (PixelLanes::ONE - leave).simd_gt(height).to_bitmask();
-        let hit = if (nodes.is_cell & !self.is_done) != 0 { self.cell_hit(field, &place, &cell, &folded) } else { leave };
+        let is_above = mask(leave.simd_lt(PixelLanes::ONE - heights));
+        let is_open = is_cell & !self.is_done;
+        let hit = if is_open.any() { self.cell_hit(field, &place, &nodes, is_open) } else { PixelLanes::splat(2.0) };
         // A crossing beyond the edge is the next node's.
-        let is_hit = hit.simd_le(exit).to_bitmask() & nodes.is_cell;
-        self.settle(field, [leave, hit], is_hit, nodes.is_cell | is_above);
+        let is_hit = is_open & mask(hit.simd_le(exit));
+        let is_passed = (is_cell | is_above) & !is_hit & !self.is_done;
+        self.depth = lanes(is_hit).select(hit, lanes(is_passed).select(leave, self.depth));
+        let up = as_unsigned(self.level + i32x8::splat(1));
+        self.parent = [0, 1].map(|axis| is_passed.select(nodes.folded[axis] >> up, i32x8::splat(i32::MIN)));
+        self.level = (is_passed | is_hit | self.is_done).select(self.level, self.level - i32x8::splat(1));
+        // At full depth every height is met.
+        self.is_done = self.is_done | is_hit | mask(self.depth.simd_ge(PixelLanes::ONE));
+    }
+
+    /// Takes rays that left the parent of the node they passed one level up.
+    fn climb(&mut self, field: &HeightField, folded: &[i32x8; 2]) {
+        let up = as_unsigned(self.level + i32x8::splat(1));
+        let moved = !self.parent[0].simd_eq(i32x8::splat(i32::MIN));
+        let stays = self.parent[0].simd_eq(folded[0] >> up) & self.parent[1].simd_eq(folded[1] >> up);
+        let climbs = moved & !stays & self.level.simd_lt(i32x8::splat(field.num_levels() - 1));
+        self.level = climbs.select(self.level + i32x8::splat(1), self.level);
+    }
+
+    fn nodes(&self, field: &HeightField, cell: [PixelLanes; 2], folded: [i32x8; 2]) -> Nodes {
+        let by = as_unsigned(self.level);
+        let is_cell = self.level.simd_eq(i32x8::splat(0));
+        let edges = [0, 1].map(|axis| {
+            let (size, at) = (i32x8::splat(field.size[axis]), folded[axis]);
+            let first = is_cell.select(at, (at.max(i32x8::splat(0)) >> by) << by);
+            let last = (first + (i32x8::splat(1) << by)).min(size);
+            if !field.is_clamped {
+                let offset = cell[axis] - PixelLanes::from_i32x8(at);
+                return [PixelLanes::from_i32x8(first) + offset, PixelLanes::from_i32x8(last) + offset];
+            }
+            // Beyond a clamped edge its nodes go on for ever.
+            let goes_on_low = first.simd_lt(is_cell.select(i32x8::splat(0), i32x8::splat(1)));
+            let goes_on_high = last.simd_eq(size);
+            [
+                lanes(goes_on_low).select(PixelLanes::splat(-1e9), PixelLanes::from_i32x8(first)),
+                lanes(goes_on_high).select(PixelLanes::splat(1e9), PixelLanes::from_i32x8(last)),
+            ]
+        });
+        Nodes { cell, folded, low: edges.map(|e| e[0]), high: edges.map(|e| e[1]) }
+    }
+
+    /// The greatest height in each ray's node, 0 to 1; 1 for a cell.
+    fn node_heights(&self, field: &HeightField, folded: &[i32x8; 2]) -> PixelLanes {
+        let (levels, x, y) = (self.level.to_array(), folded[0].to_array(), folded[1].to_array());
+        let height = |lane: usize| if levels[lane] == 0 { 65535.0 } else { field.node_max(levels[lane], x[lane], y[lane]) };
+        PixelLanes::new(std::array::from_fn(height)) * (1.0 / 65535.0)
     }
 
     /// Depth at which the rays are a nudge beyond their nodes.
     fn depth_at_exit(&self, place: &[PixelLanes; 2], nodes: &Nodes, nudge: f32) -> PixelLanes {
-        let mut advance = PixelLanes::splat(2.0);
-        for axis in 0..2 {
-            let step = self.step[axis];
-            let forwards = step.simd_gt(PixelLanes::ZERO);
-            let low = PixelLanes::new(nodes.low[axis]) - place[axis] - nudge;
-            let high = PixelLanes::new(nodes.high[axis]) - place[axis] + nudge;
-            let distance = forwards.select(high, low);
-            let is_moving = step.abs().simd_gt(PixelLanes::splat(1e-12));
-            let depth = is_moving.select(distance / is_moving.select(step, PixelLanes::ONE), PixelLanes::splat(2.0));
-            advance = advance.fast_min(depth);
-        }
-        (self.depth + advance.fast_max(PixelLanes::ZERO)).fast_min(PixelLanes::ONE)
+        let way = |axis: usize| {
+            let forwards = self.step[axis].simd_gt(PixelLanes::ZERO);
+            let edge = forwards.select(nodes.high[axis] + nudge, nodes.low[axis] - nudge);
+            // A ray that does not move along the axis, by its sign, leaves late.
+            ((edge - place[axis]) * self.inverse[axis]).abs()
+        };
+        (self.depth + way(0).fast_min(way(1))).fast_min(PixelLanes::ONE)
     }
 
-    /// Depth of the first crossing with the patch of each ray's cell; 2 where there is none.
+    /// Depth of the first crossing with the patch of each ray's cell; more than 1 where there is none.
     ///
     /// Along the ray `f(tau) = depth + tau - 1 + h = a tau^2 + b tau + c`; the hit is the first `tau >= 0` with `f >= 0`.
-    fn cell_hit(&self, field: &HeightField, place: &[PixelLanes; 2], cell: &[PixelLanes; 2], folded: &[[i32; 2]; 8]) -> PixelLanes {
+    fn cell_hit(&self, field: &HeightField, place: &[PixelLanes; 2], nodes: &Nodes, is_open: i32x8) -> PixelLanes {
+        let (xs, ys, is_open) = (nodes.folded[0].to_array(), nodes.folded[1].to_array(), is_open.to_array());
         let mut corners = [[0.0_f32; 8]; 4];
-        for lane in 0..8 {
-            let heights = field.corners(folded[lane][0], folded[lane][1]);
+        for lane in (0..8).filter(|&lane| is_open[lane] != 0) {
+            let heights = field.corners(xs[lane], ys[lane]);
             (0..4).for_each(|i| corners[i][lane] = heights[i]);
         }
         let [h00, h10, h01, h11] = corners.map(|c| PixelLanes::new(c) * (1.0 / 65535.0));
-        let (x, y) = (place[0] - cell[0], place[1] - cell[1]);
+        let (x, y) = (place[0] - nodes.cell[0], place[1] - nodes.cell[1]);
         let (hx, hy, hxy) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
         let [dx, dy] = self.step;
         let a = hxy * dx * dy;
         let b = PixelLanes::ONE + hx * dx + hy * dy + hxy * (x * dy + y * dx);
         let c = self.depth - 1.0 + h00 + hx * x + hy * y + hxy * x * y;
-        let tau = first_root(a, b, c);
-        c.simd_ge(PixelLanes::ZERO).select(self.depth, self.depth + tau)
+        c.simd_ge(PixelLanes::ZERO).select(self.depth, self.depth + first_root(a, b, c))
     }
+}
 
-    /// Takes the new depths over and chooses each ray's next level.
-    fn settle(&mut self, field: &HeightField, [leave, hit]: [PixelLanes; 2], is_hit: u32, is_passed: u32) {
-        let (leave, hit, mut depth) = (leave.to_array(), hit.to_array(), self.depth.to_array());
-        for lane in 0..8 {
-            let bit = 1 << lane;
-            if self.is_done & bit != 0 {
-                continue;
-            }
-            if is_hit & bit != 0 {
-                depth[lane] = hit[lane];
-                self.is_done |= bit;
-            } else if is_passed & bit != 0 {
-                depth[lane] = leave[lane];
-                self.level[lane] = (self.level[lane] + 1).min(field.num_levels() - 1);
-                // At full depth every height is met.
-                self.is_done |= if leave[lane] >= 1.0 { bit } else { 0 };
-            } else {
-                self.level[lane] -= 1;
-            }
-        }
-        self.depth = PixelLanes::new(depth);
+/// The place of cells in the stored pattern; beyond a clamped pattern they are -1 and the last.
+fn fold(field: &HeightField, axis: usize, cell: PixelLanes) -> i32x8 {
+    let size = field.size[axis];
+    if field.is_clamped {
+        return cell.fast_max(PixelLanes::splat(-1.0)).fast_min(PixelLanes::splat((size - 1) as f32)).fast_trunc_int();
     }
+    let cell = cell.fast_trunc_int();
+    let patterns = (PixelLanes::from_i32x8(cell) * field.inverse_size[axis]).floor().fast_trunc_int();
+    let size = i32x8::splat(size);
+    let at = cell - patterns * size;
+    // The product may round to the next whole number.
+    let at = at.simd_lt(i32x8::splat(0)).select(at + size, at);
+    at.simd_lt(size).select(at, at - size)
 }
 
 /// The least root, 0 or more, of `a x^2 + b x + c` where `c < 0`; 2 where there is none.
@@ -150,34 +194,4 @@ fn first_root(a: PixelLanes, b: PixelLanes, c: PixelLanes) -> PixelLanes {
     let valid = |x: PixelLanes| (x.simd_ge(PixelLanes::ZERO) & x.simd_le(none)).select(x, none);
     let (r1, r2) = (valid(c / q), valid(q / a));
     discriminant.simd_ge(PixelLanes::ZERO).select(r1.fast_min(r2), none)
-}
-
-/// The nodes that eight rays are in.
-#[derive(Default)]
-struct Nodes {
-    low: [[f32; 8]; 2],
-    high: [[f32; 8]; 2],
-    max_height: [f32; 8],
-    is_cell: u32,
-}
-
-impl Nodes {
-    fn set(&mut self, lane: usize, field: &HeightField, cell: [i32; 2], folded: [i32; 2], level: i32) {
-        for axis in 0..2 {
-            let (size, at) = (field.size[axis], folded[axis]);
-            let first = if level == 0 { at } else { at.max(0) >> level << level };
-            let last = (first + (1 << level)).min(size);
-            // Beyond a clamped edge its nodes go on for ever.
-            let goes_on = |edge: bool| field.is_clamped && edge;
-            let offset = if field.is_clamped { 0 } else { cell[axis] - at };
-            self.low[axis][lane] = if goes_on(first <= -i32::from(level == 0)) { -1e9 } else { (first + offset) as f32 };
-            self.high[axis][lane] = if goes_on(last == size) { 1e9 } else { (last + offset) as f32 };
-        }
-        if level == 0 {
-            self.is_cell |= 1 << lane;
-            self.max_height[lane] = 65535.0;
-        } else {
-            self.max_height[lane] = field.node_max(level, folded[0], folded[1]);
-        }
-    }
 }
