@@ -8,6 +8,8 @@ mod error;
 mod frame;
 // The stages are public to the crate's own tests, benches and fuzz targets, and no part of the interface.
 #[doc(hidden)]
+pub mod geometry;
+#[doc(hidden)]
 pub mod raster;
 #[doc(hidden)]
 pub mod filter;

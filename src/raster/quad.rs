@@ -1,12 +1,11 @@
 //! The hand-over from the rasterizer to relief and filter: two 2x2 quads with perspective-correct attributes.
 //!
-//! An attribute `a` of a triangle is `a(x, y) = (a/w)(x, y) / (1/w)(x, y)`, and both are linear on the screen.
+//! An attribute `a` of a triangle is `a(x, y) = (a/w)(x, y) / (1/w)(x, y)`, and both are linear on the screen. Every lane
+//! is `(c0 x + c1 y + c2) * (1 / inverse_w)`, whether its quad stands alone, in a pair, or among eight places of a pixel,
+//! so its bits depend on the place and the triangle only.
 
+pub use crate::geometry::Plane;
 use crate::simd::PixelLanes;
-
-/// A linear function on the screen: `value = c[0] * x + c[1] * y + c[2]`, x to the right and y down, in pixels; the
-/// centre of the first pixel lies at (0.5, 0.5).
-pub type Plane = [f32; 3];
 
 /// Everything that varies over one triangle.
 #[derive(Clone, Debug, Default)]
@@ -16,7 +15,7 @@ pub struct AttributePlanes {
     /// Texture coordinates over w.
     pub uv: [Plane; 2],
     /// The ray from the eye in the texture frame over w: `(alpha, beta, gamma)` of
-    /// `ray = alpha dP/du + beta dP/dv - gamma sqrt(|dP/du x dP/dv|) N`. Zero without texture coordinates.
+    /// `ray = alpha dP/du + beta dP/dv - gamma sqrt(|dP/du x dP/dv|) N`. `(0, 0, 1)` over w without texture coordinates.
     pub view: [Plane; 3],
     /// World-space attributes; only kept under `Lighting::Lit`.
     pub lit: Option<Box<LitPlanes>>,
@@ -29,10 +28,23 @@ pub struct LitPlanes {
     pub position: [Plane; 3],
     /// Normal.
     pub normal: [Plane; 3],
-    /// dP/du.
+    /// dP/du; 0 without texture coordinates.
     pub tangent_u: [Plane; 3],
-    /// dP/dv.
+    /// dP/dv; 0 without texture coordinates.
     pub tangent_v: [Plane; 3],
+}
+
+/// World-space attributes at eight pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct LitLanes {
+    /// Position.
+    pub position: [PixelLanes; 3],
+    /// Normal, interpolated and so not of unit length.
+    pub normal: [PixelLanes; 3],
+    /// dP/du; 0 without texture coordinates.
+    pub tangent_u: [PixelLanes; 3],
+    /// dP/dv; 0 without texture coordinates.
+    pub tangent_v: [PixelLanes; 3],
 }
 
 /// Two 2x2 quads of triangles of one material: eight pixel lanes, lane `4 * quad + 2 * dy + dx`.
@@ -50,4 +62,113 @@ pub struct QuadPair<'a> {
     pub uv: [PixelLanes; 2],
     /// The ray from the eye in the texture frame at the pixel centres (see [`AttributePlanes::view`]).
     pub view: [PixelLanes; 3],
+}
+
+impl AttributePlanes {
+    /// Texture coordinates and the view in the texture frame at eight places of the screen, in pixels. Where the triangle's
+    /// plane lies beyond its horizon they may be anything, infinite and NaN included.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, x: PixelLanes, y: PixelLanes) -> ([PixelLanes; 2], [PixelLanes; 3]) {
+        let at = Places { x, y, planes: [self, self] };
+        let w = at.w();
+        (at.attributes(w, |planes| &planes.uv), at.attributes(w, |planes| &planes.view))
+    }
+
+    /// World-space attributes at eight places of the screen, in pixels; `None` unless kept.
+    #[must_use]
+    #[inline]
+    pub fn lit_at(&self, x: PixelLanes, y: PixelLanes) -> Option<LitLanes> {
+        Places { x, y, planes: [self, self] }.lit()
+    }
+}
+
+impl<'a> QuadPair<'a> {
+    /// Two quads with their attributes at the pixel centres.
+    #[must_use]
+    #[inline]
+    pub fn new(material: usize, origin: [[i32; 2]; 2], coverage: [u8; 8], planes: [&'a AttributePlanes; 2]) -> Self {
+        let [x, y] = centers(origin);
+        let at = Places { x, y, planes };
+        let w = at.w();
+        let (uv, view) = (at.attributes(w, |planes| &planes.uv), at.attributes(w, |planes| &planes.view));
+        Self { material, origin, coverage, planes, uv, view }
+    }
+
+    /// The pixel centres on the screen, in pixels: x, y.
+    #[must_use]
+    #[inline]
+    pub fn centers(&self) -> [PixelLanes; 2] {
+        centers(self.origin)
+    }
+
+    /// World-space attributes at the pixel centres; `None` unless lit.
+    #[must_use]
+    #[inline]
+    pub fn lit(&self) -> Option<LitLanes> {
+        let [x, y] = self.centers();
+        Places { x, y, planes: self.planes }.lit()
+    }
+}
+
+#[inline]
+fn centers(origin: [[i32; 2]; 2]) -> [PixelLanes; 2] {
+    let [[x0, y0], [x1, y1]] = origin.map(|quad| quad.map(|v| v as f32));
+    let dx = PixelLanes::new([0.5, 1.5, 0.5, 1.5, 0.5, 1.5, 0.5, 1.5]);
+    let dy = PixelLanes::new([0.5, 0.5, 1.5, 1.5, 0.5, 0.5, 1.5, 1.5]);
+    [halves(x0, x1) + dx, halves(y0, y1) + dy]
+}
+
+/// One value for the lanes of the first quad, one for the second.
+#[inline(always)]
+fn halves(a: f32, b: f32) -> PixelLanes {
+    PixelLanes::new([a, a, a, a, b, b, b, b])
+}
+
+/// Eight places on the screen, four on each of two triangles.
+struct Places<'a> {
+    x: PixelLanes,
+    y: PixelLanes,
+    planes: [&'a AttributePlanes; 2],
+}
+
+impl Places<'_> {
+    #[inline(always)]
+    fn value(&self, plane: impl Fn(&AttributePlanes) -> Plane) -> PixelLanes {
+        let [a, b] = self.planes.map(&plane);
+        halves(a[0], b[0]) * self.x + halves(a[1], b[1]) * self.y + halves(a[2], b[2])
+    }
+
+    #[inline(always)]
+    fn w(&self) -> PixelLanes {
+        PixelLanes::ONE / self.value(|planes| planes.inverse_w)
+    }
+
+    #[inline(always)]
+    fn attributes<const N: usize>(
+        &self,
+        w: PixelLanes,
+        planes: impl Fn(&AttributePlanes) -> &[Plane; N],
+    ) -> [PixelLanes; N] {
+        std::array::from_fn(|i| self.value(|of| planes(of)[i]) * w)
+    }
+
+    #[inline]
+    fn lit(&self) -> Option<LitLanes> {
+        let lit = [self.planes[0].lit.as_deref()?, self.planes[1].lit.as_deref()?];
+        let w = self.w();
+        let vector = |planes: fn(&LitPlanes) -> &[Plane; 3]| {
+            let [a, b] = lit.map(planes);
+            std::array::from_fn(|i| {
+                let [a, b] = [a[i], b[i]];
+                (halves(a[0], b[0]) * self.x + halves(a[1], b[1]) * self.y + halves(a[2], b[2])) * w
+            })
+        };
+        Some(LitLanes {
+            position: vector(|lit| &lit.position),
+            normal: vector(|lit| &lit.normal),
+            tangent_u: vector(|lit| &lit.tangent_u),
+            tangent_v: vector(|lit| &lit.tangent_v),
+        })
+    }
 }

@@ -1,0 +1,192 @@
+//! Which triangles may be seen in which tile.
+//!
+//! The triangles' chunks are split into groups; each group sorts its own triangles by tile with two passes, one that counts
+//! and one that fills, into one flat list. A tile reads its part of group after group, which is the triangles' order, so
+//! neither groups nor threads show.
+
+use super::edge::{Edges, Rect};
+use crate::geometry::{Geometry, ScreenTriangle, offset_bounds, sample_offsets};
+use crate::settings::Settings;
+use rayon::prelude::*;
+
+/// Groups a thread: more balance better and cost `4 * num_tiles` bytes each.
+const GROUPS_PER_THREAD: usize = 2;
+
+/// The tiles of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TileGrid {
+    /// Side of a tile in pixels.
+    pub tile_size: i32,
+    /// Columns and rows of tiles.
+    pub num_tiles: [i32; 2],
+    /// Columns and rows of the frame's pixels.
+    pub size: [i32; 2],
+    /// Least and largest offset of a sample from its pixel's corner in 1/256 pixel.
+    pub offset_bounds: [i32; 2],
+}
+
+impl TileGrid {
+    /// The tiles that cover the frame of `settings`.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        let size = [settings.width as i32, settings.height as i32];
+        let tile_size = settings.tile_size as i32;
+        let num_tiles = size.map(|s| (s + tile_size - 1) / tile_size);
+        Self { tile_size, num_tiles, size, offset_bounds: offset_bounds(settings.msaa) }
+    }
+
+    /// The pixels of a tile that lie in the frame; tiles count from the left, row by row.
+    #[must_use]
+    pub fn rect(&self, tile: usize) -> Rect {
+        let tile = tile as i32;
+        let min = [tile % self.num_tiles[0], tile / self.num_tiles[0]].map(|t| t * self.tile_size);
+        Rect { min, max: [0, 1].map(|i| (min[i] + self.tile_size).min(self.size[i])) }
+    }
+
+    /// How many tiles there are.
+    #[must_use]
+    pub fn num(&self) -> usize {
+        self.num_tiles[0] as usize * self.num_tiles[1] as usize
+    }
+}
+
+/// The pixels within `rect` of which a sample may lie in the triangle's bounding box; empty ones have `max <= min`.
+/// `least` and `most` bound the samples' offsets.
+#[inline]
+pub(super) fn bounds(triangle: &ScreenTriangle, rect: &Rect, [least, most]: [i32; 2]) -> Rect {
+    let [a, b, c] = triangle.corners;
+    let mut bounds = *rect;
+    for i in 0..2 {
+        let (min, max) = (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i]));
+        bounds.min[i] = bounds.min[i].max((min - most + 255) >> 8);
+        bounds.max[i] = bounds.max[i].min(((max - least) >> 8) + 1);
+    }
+    bounds
+}
+
+/// The triangles of a run of chunks by tile.
+#[derive(Clone, Debug, Default)]
+struct Group {
+    /// Where each tile's part of `triangles` begins, and the end.
+    starts: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl Group {
+    fn fill(&mut self, geometry: &Geometry, chunks: std::ops::Range<usize>, grid: &TileGrid) {
+        self.starts.clear();
+        self.starts.resize(grid.num() + 1, 0);
+        for (_, triangle) in chunks.clone().flat_map(|chunk| geometry.chunk(chunk)) {
+            for_each_tile(triangle, grid, |tile| self.starts[tile + 1] += 1);
+        }
+        let mut sum = 0;
+        for start in &mut self.starts {
+            sum += *start;
+            *start = sum;
+        }
+        // `starts[tile]` is moved on to the tile's end while filling, and set back by one tile after.
+        self.triangles.resize(sum as usize, 0);
+        for (index, triangle) in chunks.flat_map(|chunk| geometry.chunk(chunk)) {
+            for_each_tile(triangle, grid, |tile| {
+                self.triangles[self.starts[tile] as usize] = index;
+                self.starts[tile] += 1;
+            });
+        }
+        self.starts.rotate_right(1);
+        self.starts[0] = 0;
+    }
+}
+
+#[inline(always)]
+fn for_each_tile(triangle: &ScreenTriangle, grid: &TileGrid, mut found: impl FnMut(usize)) {
+    let bounds = bounds(triangle, &Rect { min: [0; 2], max: grid.size }, grid.offset_bounds);
+    if bounds.min[0] >= bounds.max[0] || bounds.min[1] >= bounds.max[1] {
+        return;
+    }
+    let shift = grid.tile_size.trailing_zeros();
+    let (first, last) = (bounds.min.map(|v| v >> shift), bounds.max.map(|v| (v - 1) >> shift));
+    let tile = |x: i32, y: i32| (y * grid.num_tiles[0] + x) as usize;
+    if last[0] - first[0] <= 1 && last[1] - first[1] <= 1 {
+        (first[1]..=last[1]).for_each(|y| (first[0]..=last[0]).for_each(|x| found(tile(x, y))));
+        return;
+    }
+    // The corners of the box around all samples stand for them.
+    let [least, most] = grid.offset_bounds;
+    let edges = Edges::<4>::new(&triangle.corners, &[[least; 2], [most, least], [least, most], [most; 2]]);
+    for y in first[1]..=last[1] {
+        for x in first[0]..=last[0] {
+            if !edges.misses(&grid.rect(tile(x, y))) {
+                found(tile(x, y));
+            }
+        }
+    }
+}
+
+/// The triangles of a frame by tile. Keeps its buffers between frames.
+#[derive(Clone, Debug, Default)]
+pub struct Bins {
+    groups: Vec<Group>,
+}
+
+impl Bins {
+    /// Sorts the triangles of `geometry` into the tiles of `grid`.
+    pub fn fill(&mut self, geometry: &Geometry, grid: &TileGrid) {
+        let num_chunks = geometry.num_chunks();
+        let num_groups = num_chunks.min(rayon::current_num_threads() * GROUPS_PER_THREAD);
+        self.groups.resize_with(num_groups, Group::default);
+        self.groups.par_iter_mut().enumerate().for_each(|(i, group)| {
+            let chunks = i * num_chunks / num_groups..(i + 1) * num_chunks / num_groups;
+            group.fill(geometry, chunks, grid);
+        });
+    }
+
+    /// Appends the indices of the triangles of a tile, in order.
+    pub fn list(&self, tile: usize, triangles: &mut Vec<u32>) {
+        for group in &self.groups {
+            let [start, end] = [group.starts[tile], group.starts[tile + 1]];
+            triangles.extend_from_slice(&group.triangles[start as usize..end as usize]);
+        }
+    }
+
+    /// How many entries all tiles hold together.
+    #[must_use]
+    pub fn num_entries(&self) -> usize {
+        self.groups.iter().map(|group| group.triangles.len()).sum()
+    }
+}
+
+/// How often each pixel's samples are covered, without depth: `width * height` sums over the samples of a pixel, cut
+/// off at 255. What tests of coverage look at, and what shows overdraw.
+#[must_use]
+pub fn hit_counts(geometry: &Geometry, settings: &Settings) -> Vec<u8> {
+    match settings.msaa {
+        8 => count_hits::<8>(geometry, settings),
+        4 => count_hits::<4>(geometry, settings),
+        _ => count_hits::<1>(geometry, settings),
+    }
+}
+
+fn count_hits<const S: usize>(geometry: &Geometry, settings: &Settings) -> Vec<u8> {
+    let grid = TileGrid::new(settings);
+    let mut bins = Bins::default();
+    bins.fill(geometry, &grid);
+    let mut counts = vec![0_u8; settings.width as usize * settings.height as usize];
+    let mut list = Vec::new();
+    for tile in 0..grid.num() {
+        list.clear();
+        bins.list(tile, &mut list);
+        let rect = grid.rect(tile);
+        for &index in &list {
+            let triangle = geometry.triangle(index);
+            let edges = Edges::<S>::new(&triangle.corners, sample_offsets(settings.msaa));
+            edges.cover(&bounds(triangle, &rect, grid.offset_bounds), &mut |row| {
+                let start = row.y as usize * settings.width as usize + row.x as usize;
+                let num = (rect.max[0] - row.x).min(8) as usize;
+                for (count, is_covered) in counts[start..start + num].iter_mut().zip(row.mask.to_array()) {
+                    *count = count.saturating_add((is_covered & 1) as u8);
+                }
+            });
+        }
+    }
+    counts
+}

@@ -1,0 +1,62 @@
+//! Visibility to quads: each triangle that a 2x2 quad of pixels sees is listed once, with its coverage.
+//!
+//! Quads start on even columns and rows of the frame. Those of one quad come in the order of their triangles, so that
+//! a pixel's sum does not depend on the tiling.
+
+use super::tile::{NONE, VisibilityBuffer};
+use crate::simd::u32x8;
+
+/// A triangle seen in a quad.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SeenQuad {
+    /// The triangle's local index, later its slot among the tile's seen triangles.
+    pub(super) triangle: u32,
+    /// Column and row of the quad's upper left pixel within the tile.
+    pub(super) origin: [u16; 2],
+    /// How many samples of each pixel see the triangle, lane `2 * dy + dx`.
+    pub(super) coverage: [u8; 4],
+}
+
+/// Lists what `buffer` sees, quad by quad.
+pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<SeenQuad>) {
+    seen.clear();
+    let [num_columns, num_rows] = buffer.size();
+    for row in (0..num_rows).step_by(2) {
+        for column in 0..num_columns {
+            let pixels: [[u32x8; 2]; S] =
+                std::array::from_fn(|s| [buffer.triangles(s, column, row), buffer.triangles(s, column, row + 1)]);
+            let first = pixels[0][0].as_array()[0];
+            let differs = pixels.iter().flatten().fold(u32x8::ZERO, |all, p| all | (*p ^ u32x8::splat(first)));
+            let origin = |quad: usize| [(column * 8 + quad * 2) as u16, row as u16];
+            if differs != u32x8::ZERO {
+                (0..4).for_each(|quad| gather_quad(&pixels, quad, origin(quad), seen));
+            } else if first != NONE {
+                let whole = |quad| SeenQuad { triangle: first, origin: origin(quad), coverage: [S as u8; 4] };
+                seen.extend((0..4).map(whole));
+            }
+        }
+    }
+}
+
+/// Lists the triangles of one quad of two rows of eight pixels, in order.
+#[inline(always)]
+fn gather_quad<const S: usize>(pixels: &[[u32x8; 2]; S], quad: usize, origin: [u16; 2], seen: &mut Vec<SeenQuad>) {
+    let start = seen.len();
+    for rows in pixels {
+        for lane in 0..4 {
+            let triangle = rows[lane >> 1].as_array()[quad * 2 + (lane & 1)];
+            if triangle == NONE {
+                continue;
+            }
+            let mut at = seen.len();
+            while at > start && seen[at - 1].triangle > triangle {
+                at -= 1;
+            }
+            if at == start || seen[at - 1].triangle != triangle {
+                seen.insert(at, SeenQuad { triangle, origin, coverage: [0; 4] });
+                at += 1;
+            }
+            seen[at - 1].coverage[lane] += 1;
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Visibility of one tile: which triangle each sample sees, by depth.
+//!
+//! The buffers hold, sample by sample and row by row, eight pixels a lane vector: the nearest 1 / w, and the triangle's
+//! *local index*, its place in the tile's list. Lists are in the triangles' order, so the smaller local index is the
+//! earlier triangle, and it stays where depths are equal. All pieces of a clipped triangle go by the first one's index.
+
+use super::bin::bounds;
+use super::edge::{Edges, Rect, Row};
+use crate::geometry::{Geometry, ScreenTriangle, offset_bounds, sample_offsets};
+use crate::simd::{f32x8, i32x8, u32x8};
+
+/// No triangle.
+pub(super) const NONE: u32 = u32::MAX;
+/// Farther than any triangle: a floor's 1 / w may round to 0 or below at its horizon.
+const FARTHEST: f32 = f32::NEG_INFINITY;
+
+/// What each sample of a tile sees.
+#[derive(Clone, Debug, Default)]
+pub(super) struct VisibilityBuffer {
+    origin: [i32; 2],
+    /// Lane vectors a row, and rows.
+    num_columns: usize,
+    num_rows: usize,
+    inverse_w: Vec<f32x8>,
+    triangles: Vec<u32x8>,
+}
+
+impl VisibilityBuffer {
+    /// Draws the triangles of `list` on the pixels of `rect`.
+    pub(super) fn draw<const S: usize>(&mut self, geometry: &Geometry, list: &[u32], rect: &Rect) {
+        self.clear(S, rect);
+        let (mut last, mut last_index) = ((u32::MAX, u32::MAX), 0);
+        for (index, &triangle) in list.iter().enumerate() {
+            let triangle = geometry.triangle(triangle);
+            // Pieces of a triangle follow each other.
+            if (triangle.mesh, triangle.triangle) != last {
+                (last, last_index) = ((triangle.mesh, triangle.triangle), index as u32);
+            }
+            self.draw_triangle::<S>(triangle, last_index, rect);
+        }
+        self.clear_beyond(S, rect);
+    }
+
+    fn clear(&mut self, num_samples: usize, rect: &Rect) {
+        self.origin = rect.min;
+        self.num_columns = (rect.max[0] - rect.min[0] + 7) as usize / 8;
+        // Quads read two rows.
+        self.num_rows = (rect.max[1] - rect.min[1] + 1) as usize & !1;
+        let num = self.num_columns * self.num_rows * num_samples;
+        self.inverse_w.clear();
+        self.inverse_w.resize(num, f32x8::splat(FARTHEST));
+        self.triangles.clear();
+        self.triangles.resize(num, u32x8::splat(NONE));
+    }
+
+    /// Takes back what whole lane vectors drew to the right of the frame.
+    fn clear_beyond(&mut self, num_samples: usize, rect: &Rect) {
+        let num_inside = (rect.max[0] - rect.min[0]) % 8;
+        if num_inside == 0 {
+            return;
+        }
+        let is_beyond: [u32; 8] = std::array::from_fn(|lane| if lane as i32 >= num_inside { NONE } else { 0 });
+        for row in 1..=self.num_rows * num_samples {
+            let last = &mut self.triangles[row * self.num_columns - 1];
+            *last |= u32x8::new(is_beyond);
+        }
+    }
+
+    #[inline]
+    fn draw_triangle<const S: usize>(&mut self, triangle: &ScreenTriangle, index: u32, rect: &Rect) {
+        let offsets = sample_offsets(S as u32);
+        let edges = Edges::<S>::new(&triangle.corners, offsets);
+        let bounds = bounds(triangle, rect, offset_bounds(S as u32));
+        let [dx, dy, constant] = triangle.depth;
+        let index = u32x8::splat(index);
+        edges.cover(&bounds, &mut |row: Row| {
+            let [offset_x, offset_y] = offsets[row.sample].map(|offset| offset as f32 * (1.0 / 256.0));
+            let x = f32x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + f32x8::splat(row.x as f32 + offset_x);
+            let y = row.y as f32 + offset_y;
+            let inverse_w = x * f32x8::splat(dx) + f32x8::splat(y * dy) + f32x8::splat(constant);
+            let at = self.at(row.sample, (row.x - self.origin[0]) as usize / 8, (row.y - self.origin[1]) as usize);
+            self.test(at, inverse_w, row.mask, index);
+        });
+    }
+
+    /// Keeps the nearer of what is stored and what is drawn.
+    #[inline(always)]
+    fn test(&mut self, at: usize, inverse_w: f32x8, mask: i32x8, index: u32x8) {
+        let (stored, triangle) = (&mut self.inverse_w[at], &mut self.triangles[at]);
+        let is_nearer = inverse_w.simd_gt(*stored).to_bits() & mask.cast_unsigned();
+        *stored = f32x8::from_bits(is_nearer).bitselect(inverse_w, *stored);
+        *triangle = is_nearer.bitselect(index, *triangle);
+    }
+
+    #[inline(always)]
+    fn at(&self, sample: usize, column: usize, row: usize) -> usize {
+        (sample * self.num_rows + row) * self.num_columns + column
+    }
+
+    /// Lane vectors a row, and rows (an even number).
+    pub(super) fn size(&self) -> [usize; 2] {
+        [self.num_columns, self.num_rows]
+    }
+
+    /// Local indices of the triangles that eight pixels of a row see at a sample, or [`NONE`].
+    #[inline(always)]
+    pub(super) fn triangles(&self, sample: usize, column: usize, row: usize) -> u32x8 {
+        self.triangles[self.at(sample, column, row)]
+    }
+}
