@@ -1,5 +1,6 @@
 //! What is drawn: meshes, materials, a camera and lights. Plain data; the renderer checks it once, at its border.
 
+mod builtin;
 mod camera;
 mod contain;
 mod decode;
@@ -18,6 +19,7 @@ mod plan;
 mod surfaces;
 mod texture_line;
 
+pub use builtin::builtin;
 pub use camera::Camera;
 pub use light::Light;
 pub use load::{HeightSense, LoadOptions, Loaded, NormalY, load};
