@@ -1,8 +1,20 @@
 //! OBJ, MTL and images to a validated scene.
+//!
+//! `lines` cleans the text for tobj, `obj` and `mtl` read it, `plan` decides which image serves as what, `decode` and
+//! `surfaces` make the textures, and [`load`] puts the scene together. Files are not trusted: every limit is a field of
+//! [`LoadOptions`], and a panic of a decoder becomes an error.
 
-use super::Scene;
+use super::files::{self, Folder};
+use super::mtl::{MtlFiles, MtlMaterial};
+use super::obj::{self, Source};
+use super::plan::Planner;
+use super::{Camera, Light, Material, Mesh, Scene, locate, models, surfaces};
 use crate::error::{Error, Result};
 use crate::texture::Wrap;
+use glam::Vec3;
+use std::cell::RefCell;
+use std::collections::{BTreeSet, HashSet};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 /// Which end of a height map's range is high.
@@ -26,7 +38,7 @@ pub enum NormalY {
 }
 
 /// How [`load`] reads a scene. `None` leaves the choice to the material files.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LoadOptions {
     /// Colour map for every material with texture coordinates, in place of its own.
     pub albedo: Option<PathBuf>,
@@ -44,12 +56,44 @@ pub struct LoadOptions {
     pub wrap: Option<Wrap>,
     /// Whether surfaces keep normals, which only lighting needs. Default: `false`.
     pub keep_normals: bool,
+    /// Whether files that lie outside the OBJ's folder, also by a link, may be read when a material names them.
+    /// Files that the caller names may lie anywhere. Default: `false`.
+    pub allow_outside: bool,
+    /// Most texels a side of an image, 1 to 32768. Default: 32768.
+    pub max_image_side: u32,
+    /// Most memory, in MiB, that all textures may take together while they are decoded and packed, by an estimate from
+    /// the heads of the files: about 60 bytes a texel. Default: 1024, room for one material of 4096 x 4096 texels.
+    pub max_image_mib: u32,
+    /// Most triangles, and most `v`, `vt` and `vn` lines each. Default: 50 million.
+    pub max_triangles: u64,
+    /// Most texture files. Default: 1024.
+    pub max_textures: u32,
+}
+
+impl Default for LoadOptions {
+    fn default() -> Self {
+        Self {
+            albedo: None,
+            height: None,
+            normal: None,
+            height_sense: HeightSense::WhiteHigh,
+            relief_depth: None,
+            normal_y: NormalY::Up,
+            wrap: None,
+            keep_normals: false,
+            allow_outside: false,
+            max_image_side: 32768,
+            max_image_mib: 1024,
+            max_triangles: 50_000_000,
+            max_textures: 1024,
+        }
+    }
 }
 
 /// A scene and what its reader should know of how it was read.
 #[derive(Clone, Debug, Default)]
 pub struct Loaded {
-    /// The scene. Its camera frames the bounding box.
+    /// The scene. Its camera frames the bounding box; one light shines over the viewer's left shoulder.
     pub scene: Scene,
     /// What was chosen, such as which image serves as the height map: one line each.
     pub choices: Vec<String>,
@@ -59,9 +103,99 @@ pub struct Loaded {
 
 /// Reads an OBJ file with its MTL files and images.
 ///
+/// A missing MTL or texture that a file names is a warning, and the plain colour is drawn. Meshes without texture
+/// coordinates are drawn in their plain colour too. Normals are made where the file has none.
+///
 /// # Errors
-/// Names the file, and the line where one is wrong.
+/// Names the file, and the line where one is wrong, or the option or limit that refuses it.
 pub fn load(obj: &Path, options: &LoadOptions) -> Result<Loaded> {
-    let _ = options;
-    Err(Error::file(obj, "not yet"))
+    files::open(obj)?;
+    load_from(&ObjFile(obj), &Folder::of(obj, options.allow_outside), options)
+}
+
+struct ObjFile<'a>(&'a Path);
+
+impl Source for ObjFile<'_> {
+    fn path(&self) -> &Path {
+        self.0
+    }
+    fn reader(&self) -> Result<Box<dyn BufRead + '_>> {
+        Ok(Box::new(BufReader::with_capacity(1 << 18, files::open(self.0)?)))
+    }
+}
+
+/// [`load`] from any source of text.
+pub(super) fn load_from(source: &dyn Source, folder: &Folder, options: &LoadOptions) -> Result<Loaded> {
+    if options.relief_depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth)) {
+        return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
+    }
+    let mtl = RefCell::new(MtlFiles::new(source.path(), folder));
+    let models = obj::read(source, options.max_triangles, &mtl)?;
+    let MtlFiles { mut materials, mut warnings, .. } = mtl.into_inner();
+    let meshes = models::meshes(models, materials.len());
+    if meshes.iter().any(models::has_bad_number) {
+        return Err(
+            locate::bad_number(source).unwrap_or_else(|| Error::file(source.path(), "has numbers out of range"))
+        );
+    }
+    models::remark_placements(&materials, &mut warnings);
+    let meshes = models::finish(meshes, &materials).map_err(|reason| Error::file(source.path(), reason))?;
+    if meshes.iter().any(|mesh| mesh.material == materials.len()) {
+        materials.push(MtlMaterial { name: "none".into(), ..MtlMaterial::default() });
+    }
+    let (materials, choices) = finish(&meshes, &materials, folder, options, &mut warnings)?;
+    let mut scene = Scene { meshes, materials, ..Scene::default() };
+    frame(&mut scene);
+    scene.validate()?;
+    let mut seen = HashSet::new();
+    warnings.retain(|warning| seen.insert(warning.clone()));
+    Ok(Loaded { scene, choices, warnings })
+}
+
+/// Materials with their surfaces, and what was chosen.
+fn finish(
+    meshes: &[Mesh],
+    materials: &[MtlMaterial],
+    folder: &Folder,
+    options: &LoadOptions,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<Material>, Vec<String>)> {
+    let textured: BTreeSet<usize> = meshes.iter().filter(|m| !m.tex_coords.is_empty()).map(|m| m.material).collect();
+    let used: Vec<&MtlMaterial> = textured.iter().map(|&i| &materials[i]).collect();
+    let mut planner = Planner::new(options, folder, &used)?;
+    let mut plans = vec![None; materials.len()];
+    for &i in &textured {
+        plans[i] = planner.plan(&materials[i])?;
+    }
+    warnings.append(&mut planner.warnings);
+    let surfaces = surfaces::build(&plans.iter().flatten().cloned().collect(), options)?;
+    let finished = materials.iter().zip(&plans).map(|(material, plan)| {
+        let surface = plan.as_ref().and_then(|plan| surfaces.get(plan)).cloned();
+        Material { surface, ..plain_material(material) }
+    });
+    Ok((finished.collect(), planner.choices))
+}
+
+fn plain_material(from: &MtlMaterial) -> Material {
+    // Beyond these bounds a colour or exponent is a mistake in the file that need not stop the picture.
+    let color = |c: [f32; 3]| Vec3::from_array(c).clamp(Vec3::ZERO, Vec3::splat(1e6));
+    let fallback = Material::default();
+    Material {
+        name: from.name.clone(),
+        diffuse: from.diffuse.map_or(fallback.diffuse, color),
+        specular: from.specular.map_or(fallback.specular, color),
+        shininess: from.shininess.map_or(fallback.shininess, |exponent| exponent.clamp(0.0, 1e4)),
+        surface: None,
+    }
+}
+
+/// A camera that sees all of the scene, and light from over its left shoulder.
+fn frame(scene: &mut Scene) {
+    let points = || scene.meshes.iter().flat_map(|mesh| &mesh.positions);
+    let (min, max) = points().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| (min.min(*p), max.max(*p)));
+    scene.camera = Camera::framing(min, max);
+    let [right, up, forward] = scene.camera.axes();
+    let to_light = up * 0.8 - right * 0.6 - forward * 0.6;
+    scene.lights = vec![Light::Directional { to_light, intensity: Vec3::splat(0.85) }];
+    scene.ambient = Vec3::splat(0.15);
 }

@@ -1,15 +1,31 @@
 //! What is drawn: meshes, materials, a camera and lights. Plain data; the renderer checks it once, at its border.
 
+mod builtin;
 mod camera;
+mod contain;
+mod decode;
+mod files;
 mod light;
+mod lines;
 mod load;
+mod locate;
 mod material;
+mod memory;
 mod mesh;
+mod models;
+mod mtl;
+mod obj;
+mod plan;
+mod surfaces;
+mod texture_line;
 
+pub use builtin::builtin;
 pub use camera::Camera;
 pub use light::Light;
 pub use load::{HeightSense, LoadOptions, Loaded, NormalY, load};
 pub use material::Material;
+#[doc(hidden)]
+pub use memory::{load_image_bytes, load_mtl_bytes, load_obj_bytes};
 pub use mesh::Mesh;
 
 use crate::error::{Error, Result};

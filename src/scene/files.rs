@@ -1,0 +1,75 @@
+//! Which files a scene may read: regular files only, and inside the scene's folder unless the caller allows more.
+
+use crate::error::{Error, Result};
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Opens a regular file; devices, pipes and folders are refused before they are opened, since a pipe would block.
+pub(super) fn open(path: &Path) -> Result<File> {
+    let refuse = |reason: io::Error| Error::file(path, plain(&reason));
+    let check = |kind: fs::Metadata| {
+        if kind.is_file() { Ok(()) } else { Err(Error::file(path, "not a regular file")) }
+    };
+    check(fs::metadata(path).map_err(refuse)?)?;
+    let file = File::open(path).map_err(refuse)?;
+    check(file.metadata().map_err(refuse)?)?;
+    Ok(file)
+}
+
+/// The system's words without its error number.
+pub(super) fn plain(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "no such file".into(),
+        io::ErrorKind::PermissionDenied => "permission denied".into(),
+        _ => error.to_string(),
+    }
+}
+
+/// The folder that a scene's files must lie in.
+#[derive(Clone, Debug)]
+pub(super) struct Folder {
+    /// Absolute and without links; `None`: a scene from memory, which may read nothing.
+    root: Option<PathBuf>,
+    allow_outside: bool,
+}
+
+impl Folder {
+    /// The folder of the OBJ file.
+    pub(super) fn of(obj: &Path, allow_outside: bool) -> Self {
+        Self { root: fs::canonicalize(parent(obj)).ok(), allow_outside }
+    }
+
+    /// No folder at all: every file counts as missing.
+    pub(super) fn none() -> Self {
+        Self { root: None, allow_outside: false }
+    }
+
+    /// The absolute path without links of the file `name` that the file `named_in` asks for; `None` when it is missing.
+    ///
+    /// # Errors
+    /// Says why what lies outside the folder, or is no regular file, is refused.
+    pub(super) fn resolve(&self, name: &str, named_in: &Path) -> std::result::Result<Option<PathBuf>, String> {
+        let Some(root) = &self.root else {
+            return Ok(None);
+        };
+        let path = parent(named_in).join(name);
+        let Ok(real) = fs::canonicalize(&path) else {
+            return Ok(None);
+        };
+        if !self.allow_outside && !real.starts_with(root) {
+            return Err(format!("'{name}' lies outside the scene's folder; --allow-outside reads it all the same"));
+        }
+        if !real.is_file() {
+            return Err(format!("'{name}' is not a regular file"));
+        }
+        Ok(Some(real))
+    }
+}
+
+fn parent(file: &Path) -> &Path {
+    match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}

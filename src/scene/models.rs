@@ -1,0 +1,101 @@
+//! tobj's models to meshes with texture coordinates as the materials scale them, normals and tangents.
+
+use super::Mesh;
+use super::locate::{MAX_POSITION, MAX_REPEATS};
+use super::mtl::{MtlMaterial, TextureRef};
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+/// One mesh a model, without tangents yet; a model without material gets the index `num_materials`.
+pub(super) fn meshes(models: Vec<tobj::Model>, num_materials: usize) -> Vec<Mesh> {
+    models.into_par_iter().map(|model| mesh(model, num_materials)).collect()
+}
+
+fn mesh(model: tobj::Model, num_materials: usize) -> Mesh {
+    let tobj::Model { mesh, name } = model;
+    let positions: Vec<Vec3> = mesh.positions.as_chunks().0.iter().map(|p| Vec3::from_array(*p)).collect();
+    let mut tex_coords: Vec<Vec2> = mesh.texcoords.as_chunks().0.iter().map(|t| Vec2::from_array(*t)).collect();
+    let mut normals: Vec<Vec3> = mesh.normals.as_chunks().0.iter().map(|n| Vec3::from_array(*n)).collect();
+    // Models are split where their corners change in what they name; what differs nevertheless cannot be assigned.
+    if tex_coords.len() != positions.len() {
+        tex_coords.clear();
+    }
+    if normals.len() != positions.len() {
+        normals.clear();
+    }
+    let triangles = mesh.indices.as_chunks().0.to_vec();
+    let material = mesh.material_id.filter(|&i| i < num_materials).unwrap_or(num_materials);
+    Mesh { name, material, positions, tex_coords, normals, triangles, tangents: Vec::new() }
+}
+
+/// Whether a position, coordinate or normal is not finite or too large.
+pub(super) fn has_bad_number(mesh: &Mesh) -> bool {
+    // A comparison with NaN is false.
+    !mesh.positions.iter().all(|p| p.abs().cmple(Vec3::splat(MAX_POSITION)).all())
+        || !mesh.tex_coords.iter().all(|t| t.abs().cmple(Vec2::splat(MAX_REPEATS)).all())
+        || !mesh.normals.iter().all(|n| n.is_finite())
+}
+
+/// Scales texture coordinates, and makes unit normals and tangents.
+///
+/// # Errors
+/// Says which mesh's texture coordinates leave their range.
+pub(super) fn finish(meshes: Vec<Mesh>, materials: &[MtlMaterial]) -> Result<Vec<Mesh>, String> {
+    let finished: Vec<Mesh> = meshes
+        .into_par_iter()
+        .map(|mut mesh| {
+            let (scale, offset) = materials.get(mesh.material).map_or((Vec2::ONE, Vec2::ZERO), placement);
+            if (scale, offset) != (Vec2::ONE, Vec2::ZERO) {
+                mesh.tex_coords.iter_mut().for_each(|t| *t = *t * scale + offset);
+            }
+            with_frames(mesh)
+        })
+        .collect();
+    match finished.iter().find(|mesh| has_bad_number(mesh)) {
+        Some(mesh) => Err(format!("-s or -o moves texture coordinates of '{}' out of range", mesh.name)),
+        None => Ok(finished),
+    }
+}
+
+fn with_frames(mesh: Mesh) -> Mesh {
+    let Mesh { name, material, positions, tex_coords, normals, triangles, .. } = mesh;
+    let given: Vec<Option<Vec3>> = normals.into_iter().map(unit).collect();
+    let whole: Option<Vec<Vec3>> = given.iter().copied().collect();
+    // Normals that have no direction are made, like missing ones.
+    let is_whole = whole.is_some();
+    let mut made = Mesh::new(positions, tex_coords, whole.unwrap_or_default(), triangles);
+    if !is_whole {
+        made.normals.iter_mut().zip(given).for_each(|(normal, given)| *normal = given.unwrap_or(*normal));
+    }
+    Mesh { name, material, ..made }
+}
+
+fn unit(normal: Vec3) -> Option<Vec3> {
+    // Divided first: the square of a large component would be infinite.
+    (normal / normal.abs().max_element()).try_normalize()
+}
+
+/// Scale and shift of a material's texture coordinates: those of its colour map, else of its first other map.
+fn placement(material: &MtlMaterial) -> (Vec2, Vec2) {
+    let first = textures(material).next();
+    first.map_or((Vec2::ONE, Vec2::ZERO), |map| (map.texture.scale.into(), map.texture.offset.into()))
+}
+
+fn textures(material: &MtlMaterial) -> impl Iterator<Item = &TextureRef> {
+    [&material.albedo, &material.height, &material.bump, &material.normal].into_iter().flatten()
+}
+
+/// Warns of maps whose own scale and shift are not those that are used.
+pub(super) fn remark_placements(materials: &[MtlMaterial], warnings: &mut Vec<String>) {
+    for material in materials {
+        let Some(first) = textures(material).next() else {
+            continue;
+        };
+        for map in textures(material).skip(1) {
+            if (map.texture.scale, map.texture.offset) != (first.texture.scale, first.texture.offset) {
+                let text = format_args!("-s and -o of {} give way to those of {}", map.keyword, first.keyword);
+                warnings.push(map.place().remark(text));
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! MTL files, through tobj, to materials whose texture lines are taken apart.
+//!
+//! Keywords are read in any spelling of upper and lower case and handed to tobj in its own; what tobj would panic at or
+//! refuse a whole file for (`Kd` with one number, an empty `map_Kd`) is put right or refused with its line before.
+
+use super::files::{self, Folder};
+use super::lines::{Clean, CleanLines, Place};
+use super::texture_line::TextureLine;
+use crate::error::{Error, Result};
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write as _;
+use std::io::{BufRead, BufReader, Read as _};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Largest MTL file that is read in bytes, and most materials: real ones have a few hundred kilobytes.
+const MAX_MTL_BYTES: u64 = 16 << 20;
+const MAX_MATERIALS: usize = 65536;
+
+/// A texture that a material names, and where.
+#[derive(Clone, Debug)]
+pub(super) struct TextureRef {
+    pub(super) texture: TextureLine,
+    /// The keyword, such as `map_Kd`.
+    pub(super) keyword: &'static str,
+    pub(super) path: Arc<Path>,
+    pub(super) line: usize,
+}
+
+impl TextureRef {
+    pub(super) fn place(&self) -> Place<'_> {
+        Place { path: &self.path, line: self.line }
+    }
+}
+
+/// A material as its file has it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct MtlMaterial {
+    pub(super) name: String,
+    pub(super) diffuse: Option<[f32; 3]>,
+    pub(super) specular: Option<[f32; 3]>,
+    pub(super) shininess: Option<f32>,
+    /// `map_Kd`.
+    pub(super) albedo: Option<TextureRef>,
+    /// `disp`, `map_disp`.
+    pub(super) height: Option<TextureRef>,
+    /// `bump`, `map_bump`: a height map when the image is gray.
+    pub(super) bump: Option<TextureRef>,
+    /// `norm`, `map_Kn`.
+    pub(super) normal: Option<TextureRef>,
+}
+
+/// All MTL files that an OBJ names.
+pub(super) struct MtlFiles {
+    obj: PathBuf,
+    folder: Folder,
+    pub(super) materials: Vec<MtlMaterial>,
+    pub(super) warnings: Vec<String>,
+    pub(super) failure: Option<Error>,
+    known: HashSet<String>,
+    files: HashSet<PathBuf>,
+}
+
+type TobjMaterials = (Vec<tobj::Material>, HashMap<String, usize>);
+
+impl MtlFiles {
+    /// No materials yet, for the OBJ file `obj`.
+    pub(super) fn new(obj: &Path, folder: &Folder) -> Self {
+        let (materials, warnings) = (Vec::new(), Vec::new());
+        let (obj, folder) = (obj.into(), folder.clone());
+        Self { obj, folder, materials, warnings, failure: None, known: HashSet::new(), files: HashSet::new() }
+    }
+
+    /// Reads what an `mtllib` line names: one file with spaces in its name, or several. Failures are kept.
+    pub(super) fn read(&mut self, names: &Path) -> TobjMaterials {
+        let before = self.materials.len();
+        let result = self.find(&names.to_string_lossy().replace('\\', "/")).and_then(|paths| {
+            paths.iter().try_fold(TobjMaterials::default(), |mut all, path| {
+                let (materials, map) = self.read_file(path)?;
+                let offset = all.0.len();
+                all.0.extend(materials);
+                all.1.extend(map.into_iter().map(|(name, i)| (name, i + offset)));
+                Ok(all)
+            })
+        });
+        result.unwrap_or_else(|failure| {
+            self.failure.get_or_insert(failure);
+            self.materials.truncate(before);
+            TobjMaterials::default()
+        })
+    }
+
+    /// The files behind the names, each as it is to be shown; those read before are left out.
+    fn find(&mut self, names: &str) -> Result<Vec<PathBuf>> {
+        let names = names.trim_matches('"');
+        let resolve =
+            |name: &str| self.folder.resolve(name, &self.obj).map_err(|reason| Error::file(&self.obj, reason));
+        if let Some(path) = resolve(names)? {
+            return Ok(self.files.insert(path).then(|| self.obj.with_file_name(names)).into_iter().collect());
+        }
+        let mut found = Vec::new();
+        for name in names.split_whitespace() {
+            match resolve(name)? {
+                Some(path) => found.extend(self.files.insert(path).then(|| self.obj.with_file_name(name))),
+                None if self.files.insert(name.into()) => {
+                    let path = self.obj.with_file_name(name);
+                    self.warnings.push(format!("{}: no such file; plain colours are drawn", path.display()));
+                }
+                None => {}
+            }
+        }
+        Ok(found)
+    }
+
+    fn read_file(&mut self, path: &Path) -> Result<TobjMaterials> {
+        let file = files::open(path)?;
+        if file.metadata().is_ok_and(|data| data.len() > MAX_MTL_BYTES) {
+            return Err(Error::file(path, format!("more than {} MiB are no material file", MAX_MTL_BYTES >> 20)));
+        }
+        self.read_text(BufReader::new(file.take(MAX_MTL_BYTES)), path)
+    }
+
+    /// Reads the text of one MTL file.
+    pub(super) fn read_text(&mut self, text: impl BufRead, path: &Path) -> Result<TobjMaterials> {
+        let cleaner = MtlLines { lines: Vec::new(), warnings: Vec::new() };
+        let mut lines = CleanLines::new(text, path, cleaner);
+        let read = super::contain::contain(|| tobj::load_mtl_buf(&mut lines));
+        if let Some(failure) = lines.failure.take() {
+            return Err(failure);
+        }
+        let (materials, map) = match read {
+            Some(Ok(read)) => read,
+            Some(Err(error)) => return Err(lines.place().refuse(error)),
+            None => return Err(lines.place().refuse("cannot be read")),
+        };
+        if self.materials.len() + materials.len() > MAX_MATERIALS {
+            return Err(Error::file(path, format!("more than {MAX_MATERIALS} materials")));
+        }
+        self.warnings.append(&mut lines.cleaner.warnings);
+        let shown: Arc<Path> = path.into();
+        for (material, lines) in materials.iter().zip(&lines.cleaner.lines) {
+            let material = self.take_apart(material, lines, &shown)?;
+            self.known.insert(material.name.clone());
+            self.materials.push(material);
+        }
+        Ok((materials, map))
+    }
+
+    fn take_apart(&mut self, from: &tobj::Material, lines: &LineNumbers, path: &Arc<Path>) -> Result<MtlMaterial> {
+        let unknown = |key: &str| from.unknown_param.get(key);
+        let mut texture = |keyword: &'static str, text: Option<&String>| {
+            text.map(|text| {
+                let line = lines.get(keyword).copied().unwrap_or_default();
+                self.texture(keyword, text, Place { path, line }, path)
+            })
+            .transpose()
+        };
+        Ok(MtlMaterial {
+            name: from.name.clone(),
+            diffuse: from.diffuse,
+            specular: from.specular,
+            shininess: from.shininess,
+            albedo: texture("map_Kd", from.diffuse_texture.as_ref())?,
+            height: texture("disp", unknown("disp"))?,
+            bump: texture("map_Bump", from.normal_texture.as_ref())?,
+            normal: texture("norm", unknown("norm"))?,
+        })
+    }
+
+    fn texture(&mut self, keyword: &'static str, text: &str, at: Place<'_>, path: &Arc<Path>) -> Result<TextureRef> {
+        let mut texture = TextureLine::parse(text).map_err(|reason| at.refuse(reason))?;
+        if keyword != "disp" && keyword != "map_Bump" && texture.range != [0.0, 1.0] {
+            texture.unsupported.push("-mm".into());
+        }
+        for option in &texture.unsupported {
+            self.warnings.push(at.remark(format_args!("option {option} of {keyword} is not supported")));
+        }
+        Ok(TextureRef { texture, keyword, path: Arc::clone(path), line: at.line })
+    }
+
+    /// Warns, once a name, of a `usemtl` before any file has defined its material.
+    pub(super) fn remark_unknown(&mut self, name: &str, at: Place<'_>) {
+        let is_known = self.known.contains(name);
+        if !is_known && !self.materials.is_empty() && self.known.insert(name.into()) {
+            self.warnings
+                .push(at.remark(format_args!("material '{name}' is not defined before; plain colour is drawn")));
+        }
+    }
+}
+
+/// The line of each keyword of a material.
+type LineNumbers = HashMap<&'static str, usize>;
+
+/// Cleans the lines of an MTL file, see the module's head.
+struct MtlLines {
+    /// One map a material.
+    lines: Vec<LineNumbers>,
+    warnings: Vec<String>,
+}
+
+/// tobj's spelling of the keywords that matter here.
+fn spelled(keyword: &str) -> Option<&'static str> {
+    Some(match keyword.to_ascii_lowercase().as_str() {
+        "newmtl" => "newmtl",
+        "kd" => "Kd",
+        "ks" => "Ks",
+        "ns" => "Ns",
+        "map_kd" => "map_Kd",
+        "bump" | "map_bump" => "map_Bump",
+        "disp" | "map_disp" => "disp",
+        "norm" | "map_kn" => "norm",
+        _ => return None,
+    })
+}
+
+impl Clean for MtlLines {
+    fn clean(&mut self, text: &str, at: Place<'_>, out: &mut String) -> Result<()> {
+        let (word, rest) = text.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((text, ""));
+        let Some(keyword) = spelled(word) else {
+            return Ok(());
+        };
+        let rest = rest.trim();
+        if keyword == "newmtl" {
+            if rest.is_empty() {
+                return Err(at.refuse("newmtl needs a name"));
+            }
+            self.lines.push(LineNumbers::new());
+        }
+        let Some(lines) = self.lines.last_mut() else {
+            return Err(at.refuse(format!("{word} stands before the first newmtl")));
+        };
+        lines.insert(keyword, at.line);
+        match keyword {
+            "Kd" | "Ks" if rest.starts_with("spectral") || rest.starts_with("xyz") => {
+                self.warnings.push(at.remark(format_args!("{word} {rest} is not supported")));
+            }
+            "Kd" | "Ks" => {
+                let [r, g, b] = color(rest).map_err(|reason| at.refuse(format!("{word}: {reason}")))?;
+                let _ = writeln!(out, "{keyword} {r} {g} {b}");
+            }
+            "Ns" => {
+                let exponent = number(rest).map_err(|reason| at.refuse(format!("{word}: {reason}")))?;
+                let _ = writeln!(out, "{keyword} {exponent}");
+            }
+            _ if rest.is_empty() => self.warnings.push(at.remark(format_args!("{word} names no file"))),
+            _ => _ = writeln!(out, "{keyword} {rest}"),
+        }
+        Ok(())
+    }
+}
+
+fn number(text: &str) -> std::result::Result<f32, String> {
+    let word = text.split_whitespace().next().unwrap_or_default();
+    match word.parse::<f32>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("'{word}' is not a finite number")),
+    }
+}
+
+/// Three numbers, or one for all three as the format allows.
+fn color(text: &str) -> std::result::Result<[f32; 3], String> {
+    let words = text.split('#').next().unwrap_or_default();
+    let numbers = words.split_whitespace().take(3).map(number).collect::<std::result::Result<Vec<_>, _>>()?;
+    match numbers[..] {
+        [r, g, b] => Ok([r, g, b]),
+        [r] => Ok([r; 3]),
+        _ => Err("three numbers are needed".into()),
+    }
+}

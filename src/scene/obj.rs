@@ -1,0 +1,245 @@
+//! An OBJ file, through tobj, to models of triangles.
+//!
+//! [`ObjLines`] puts the lines right that tobj stumbles over: lines and points are left out (tobj makes triangles of
+//! long `l` lines), comments behind numbers are cut, colours behind positions are dropped, indices of 0 or before the
+//! first are refused, and a model is split where its faces begin or cease to have texture coordinates or normals,
+//! since tobj keeps no record of which vertex went without.
+
+use super::lines::{Clean, CleanLines, Place};
+use super::locate;
+use super::mtl::MtlFiles;
+use crate::error::{Error, Result};
+use std::cell::RefCell;
+use std::fmt::Write as _;
+use std::io::BufRead;
+use std::path::Path;
+
+/// Where the OBJ's text comes from; it is read again only to find the line of an error.
+pub(super) trait Source {
+    fn path(&self) -> &Path;
+    fn reader(&self) -> Result<Box<dyn BufRead + '_>>;
+}
+
+/// Reads all models; their `material_id` is an index into the materials of `mtl`.
+///
+/// # Errors
+/// Names the line that is wrong, or the file when it has no faces.
+pub(super) fn read(source: &dyn Source, max_triangles: u64, mtl: &RefCell<MtlFiles>) -> Result<Vec<tobj::Model>> {
+    let cleaner = ObjLines::new(max_triangles, Some(mtl));
+    let mut lines = CleanLines::new(source.reader()?, source.path(), cleaner);
+    let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
+    let read =
+        super::contain::contain(|| tobj::load_obj_buf(&mut lines, &options, |name| Ok(mtl.borrow_mut().read(name))));
+    if let Some(failure) = lines.failure.take().or_else(|| mtl.borrow_mut().failure.take()) {
+        return Err(failure);
+    }
+    let models = match read {
+        Some(Ok((models, _))) => models,
+        Some(Err(error)) => return Err(refusal(error, lines.place(), source)),
+        None => {
+            return Err(locate::bad_index(source).unwrap_or_else(|| lines.place().refuse("cannot be read")));
+        }
+    };
+    lines.cleaner.check_lists(source.path())?;
+    let models: Vec<_> = models.into_iter().filter(|model| !model.mesh.indices.is_empty()).collect();
+    if models.is_empty() {
+        return Err(Error::file(source.path(), "has no faces"));
+    }
+    Ok(models)
+}
+
+fn refusal(error: tobj::LoadError, place: Place<'_>, source: &dyn Source) -> Error {
+    use tobj::LoadError as E;
+    let reason = match error {
+        E::PositionParseError => "'v' needs three numbers",
+        E::ScalingByZeroError => "the fourth number of 'v' must not be 0",
+        E::TexcoordParseError => "'vt' needs two numbers",
+        E::NormalParseError => "'vn' needs three numbers",
+        E::FaceParseError => "a face needs corners such as 1, 1/2, 1//3 or 1/2/3",
+        E::FaceVertexOutOfBounds | E::FaceTexCoordOutOfBounds | E::FaceNormalOutOfBounds => {
+            return locate::bad_index(source).unwrap_or_else(|| Error::file(source.path(), error));
+        }
+        _ => return place.refuse(error),
+    };
+    place.refuse(reason)
+}
+
+/// What the corners of a face name besides positions.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Corners {
+    have_tex_coords: bool,
+    have_normals: bool,
+}
+
+/// Cleans the lines of an OBJ file, see the module's head.
+pub(super) struct ObjLines<'a> {
+    max_triangles: u64,
+    mtl: Option<&'a RefCell<MtlFiles>>,
+    pub(super) num_positions: u64,
+    pub(super) num_tex_coords: u64,
+    pub(super) num_normals: u64,
+    num_triangles: u64,
+    /// The name after the last `o` or `g`.
+    name: String,
+    corners: Option<Corners>,
+    first_with_tex_coords: usize,
+    first_with_normals: usize,
+}
+
+impl<'a> ObjLines<'a> {
+    pub(super) fn new(max_triangles: u64, mtl: Option<&'a RefCell<MtlFiles>>) -> Self {
+        Self {
+            max_triangles,
+            mtl,
+            num_positions: 0,
+            num_tex_coords: 0,
+            num_normals: 0,
+            num_triangles: 0,
+            name: String::new(),
+            corners: None,
+            first_with_tex_coords: 0,
+            first_with_normals: 0,
+        }
+    }
+
+    /// Faces may not name texture coordinates or normals in a file that has none; tobj lets that pass.
+    fn check_lists(&self, path: &Path) -> Result<()> {
+        let place = |line| Place { path, line };
+        if self.num_tex_coords == 0 && self.first_with_tex_coords > 0 {
+            return Err(place(self.first_with_tex_coords).refuse("names texture coordinates, and the file has none"));
+        }
+        if self.num_normals == 0 && self.first_with_normals > 0 {
+            return Err(place(self.first_with_normals).refuse("names normals, and the file has none"));
+        }
+        Ok(())
+    }
+
+    /// Counts a `v`, `vt` or `vn`; as many are allowed as triangles, lest memory fills without one face.
+    fn count(&mut self, keyword: &str, at: Place<'_>) -> Result<()> {
+        let num = match keyword {
+            "v" => &mut self.num_positions,
+            "vt" => &mut self.num_tex_coords,
+            _ => &mut self.num_normals,
+        };
+        *num += 1;
+        if *num > self.max_triangles {
+            return Err(at.refuse(format!("more than {} vertices (max_triangles)", self.max_triangles)));
+        }
+        Ok(())
+    }
+
+    fn face(&mut self, text: &str, at: Place<'_>, out: &mut String) -> Result<()> {
+        let scan = self.scan(text).map_err(|reason| at.refuse(reason))?;
+        if scan.num < 3 {
+            return Ok(());
+        }
+        self.num_triangles += scan.num - 2;
+        if self.num_triangles > self.max_triangles {
+            return Err(at.refuse(format!("more than {} triangles (max_triangles)", self.max_triangles)));
+        }
+        let corners =
+            Corners { have_tex_coords: scan.num_tex_coords == scan.num, have_normals: scan.num_normals == scan.num };
+        if corners.have_tex_coords && self.first_with_tex_coords == 0 {
+            self.first_with_tex_coords = at.line;
+        }
+        if corners.have_normals && self.first_with_normals == 0 {
+            self.first_with_normals = at.line;
+        }
+        if self.corners.replace(corners).is_some_and(|before| before != corners) {
+            let _ = writeln!(out, "o {}", self.name);
+        }
+        if [scan.num_tex_coords, scan.num_normals].iter().all(|&num| num == 0 || num == scan.num) {
+            (out.push_str("f "), out.push_str(text), out.push('\n'));
+        } else {
+            write_face(text, corners, out);
+        }
+        Ok(())
+    }
+
+    /// Counts corners and what they name; refuses 0 and what lies before the first of a list.
+    fn scan(&self, text: &str) -> std::result::Result<Scan, String> {
+        let mut scan = Scan::default();
+        for corner in text.split_ascii_whitespace() {
+            scan.num += 1;
+            for (i, index) in corner.split('/').enumerate() {
+                let num = match i {
+                    0 => self.num_positions,
+                    1 => self.num_tex_coords,
+                    _ => self.num_normals,
+                };
+                match index.as_bytes().first() {
+                    None => continue,
+                    Some(b'0' | b'-') => check_index(index, num)?,
+                    Some(_) => {}
+                }
+                scan.num_tex_coords += u64::from(i == 1);
+                scan.num_normals += u64::from(i == 2);
+            }
+        }
+        Ok(scan)
+    }
+}
+
+#[derive(Default)]
+struct Scan {
+    num: u64,
+    num_tex_coords: u64,
+    num_normals: u64,
+}
+
+fn check_index(index: &str, num: u64) -> std::result::Result<(), String> {
+    match index.parse::<i64>() {
+        Ok(0) => Err("index 0: indices count from 1, or back from -1".into()),
+        Ok(i) if i < 0 && i.unsigned_abs() > num => Err(format!("index {i} is out of range: only {num} so far")),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a face whose corners differ in what they name, with only what all of them name.
+fn write_face(text: &str, corners: Corners, out: &mut String) {
+    out.push('f');
+    for corner in text.split_ascii_whitespace() {
+        let mut indices = corner.split('/');
+        let [v, vt, vn] = std::array::from_fn(|_| indices.next().unwrap_or_default());
+        let _ = match (corners.have_tex_coords, corners.have_normals) {
+            (true, true) => write!(out, " {v}/{vt}/{vn}"),
+            (true, false) => write!(out, " {v}/{vt}"),
+            (false, true) => write!(out, " {v}//{vn}"),
+            (false, false) => write!(out, " {v}"),
+        };
+    }
+    out.push('\n');
+}
+
+impl Clean for ObjLines<'_> {
+    fn clean(&mut self, text: &str, at: Place<'_>, out: &mut String) -> Result<()> {
+        let (keyword, rest) = text.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((text, ""));
+        match keyword {
+            "v" | "vt" | "vn" => {
+                self.count(keyword, at)?;
+                let numbers = rest.split('#').next().unwrap_or_default();
+                (out.push_str(keyword), out.push(' '));
+                if keyword == "v" && numbers.split_ascii_whitespace().nth(4).is_some() {
+                    numbers.split_ascii_whitespace().take(3).for_each(|n| (out.push_str(n), out.push(' ')).1);
+                } else {
+                    out.push_str(numbers);
+                }
+                out.push('\n');
+            }
+            "f" => self.face(rest.split('#').next().unwrap_or_default().trim(), at, out)?,
+            "o" | "g" => {
+                self.name = rest.trim().into();
+                let _ = writeln!(out, "o {}", self.name);
+            }
+            "mtllib" => _ = writeln!(out, "mtllib {}", rest.trim()),
+            "usemtl" if !rest.trim().is_empty() => {
+                if let Some(mtl) = self.mtl {
+                    mtl.borrow_mut().remark_unknown(rest.trim(), at);
+                }
+                let _ = writeln!(out, "usemtl {}", rest.trim());
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}

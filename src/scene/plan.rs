@@ -1,0 +1,246 @@
+//! Which image serves a material as colour, height and normals.
+//!
+//! Height: the caller's file, else `disp`/`map_disp`, else `bump`/`map_bump` when that image is gray. A coloured bump is
+//! a normal map, as `norm`/`map_Kn` is. Every choice is put into words.
+
+use super::decode;
+use super::files::{self, Folder};
+use super::load::{HeightSense, LoadOptions, NormalY};
+use super::mtl::{MtlMaterial, TextureRef};
+use super::surfaces::image_limits;
+use super::texture_line::Channel;
+use crate::error::{Error, Result};
+use crate::texture::Wrap;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Relief depth in texture repeats where nothing says otherwise.
+const DEFAULT_DEPTH: f32 = 0.05;
+
+/// An image file and how it is read.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Map {
+    /// Absolute and without links.
+    pub(super) path: PathBuf,
+    pub(super) kind: Kind,
+}
+
+/// How an image is read. Floats are held as bits, so that plans can be ordered.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Kind {
+    Color,
+    Height { channel: Option<Channel>, range: [u32; 2] },
+    Normal { strength: u32, is_green_down: bool },
+}
+
+/// What one surface is made from.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Plan {
+    albedo: Option<Map>,
+    height: Option<Map>,
+    normal: Option<Map>,
+    /// 0 repeat, 1 mirror, 2 clamp.
+    wrap: u8,
+    depth: u32,
+}
+
+impl Plan {
+    /// The maps that there are.
+    pub(super) fn maps(&self) -> impl Iterator<Item = &Map> {
+        [&self.albedo, &self.height, &self.normal].into_iter().flatten()
+    }
+
+    pub(super) fn wrap(&self) -> Wrap {
+        [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp][usize::from(self.wrap)]
+    }
+
+    pub(super) fn is_mirrored(&self) -> bool {
+        self.wrap() == Wrap::Mirror
+    }
+
+    pub(super) fn relief_depth(&self) -> f32 {
+        f32::from_bits(self.depth)
+    }
+}
+
+/// The maps that the caller names in place of the materials' own.
+#[derive(Debug, Default)]
+struct Replacements {
+    albedo: Option<PathBuf>,
+    height: Option<PathBuf>,
+    normal: Option<PathBuf>,
+}
+
+/// Plans one material after another.
+pub(super) struct Planner<'a> {
+    options: &'a LoadOptions,
+    folder: &'a Folder,
+    replacements: Replacements,
+    /// Whether the image behind a `bump` is gray.
+    is_gray: BTreeMap<PathBuf, bool>,
+    pub(super) choices: Vec<String>,
+    pub(super) warnings: Vec<String>,
+}
+
+impl<'a> Planner<'a> {
+    /// Looks at the caller's maps and at the images of those `bump` lines whose meaning depends on them.
+    ///
+    /// # Errors
+    /// Names a file that is missing or refused.
+    pub(super) fn new(options: &'a LoadOptions, folder: &'a Folder, materials: &[&MtlMaterial]) -> Result<Self> {
+        let real = |path: &Option<PathBuf>| path.as_deref().map(real_path).transpose();
+        let (albedo, height, normal) = (real(&options.albedo)?, real(&options.height)?, real(&options.normal)?);
+        let mut planner = Self {
+            options,
+            folder,
+            replacements: Replacements { albedo, height, normal },
+            is_gray: BTreeMap::new(),
+            choices: Vec::new(),
+            warnings: Vec::new(),
+        };
+        planner.note_replacements();
+        planner.look_at_bumps(materials)?;
+        Ok(planner)
+    }
+
+    fn note_replacements(&mut self) {
+        let named =
+            [("colour", &self.options.albedo), ("height", &self.options.height), ("normals", &self.options.normal)];
+        for (what, path) in named {
+            if let Some(path) = path {
+                self.choices.push(format!("every material: {what} from {}", path.display()));
+            }
+        }
+    }
+
+    fn look_at_bumps(&mut self, materials: &[&MtlMaterial]) -> Result<()> {
+        let mut paths = BTreeSet::new();
+        for bump in materials.iter().filter_map(|material| material.bump.as_ref()) {
+            if bump.texture.channel.is_none() && !(self.replacements.height.is_some() && !self.wants_normals()) {
+                paths.extend(self.folder.resolve(&bump.texture.name, &bump.path).ok().flatten());
+            }
+        }
+        let paths: Vec<_> = paths.into_iter().collect();
+        if paths.len() > self.options.max_textures as usize {
+            let reason =
+                format!("the scene names {} texture files, more than {}", paths.len(), self.options.max_textures);
+            return Err(Error::setting("max_textures", reason));
+        }
+        let limits = image_limits(self.options);
+        let is_gray: Vec<Result<bool>> = paths
+            .par_iter()
+            .map(|path| Ok(decode::probe(path, limits)?.is_gray_format() || decode::decode(path, limits)?.is_gray()))
+            .collect();
+        for (path, is_gray) in paths.into_iter().zip(is_gray) {
+            self.is_gray.insert(path, is_gray?);
+        }
+        Ok(())
+    }
+
+    fn wants_normals(&self) -> bool {
+        self.options.keep_normals && self.replacements.normal.is_none()
+    }
+
+    /// The maps of a material that is drawn with texture coordinates; `None` when it has none.
+    ///
+    /// # Errors
+    /// Names the line whose file is refused.
+    pub(super) fn plan(&mut self, material: &MtlMaterial) -> Result<Option<Plan>> {
+        let (albedo, albedo_clamped) = self.albedo(material)?;
+        let bump = self.found(material.bump.as_ref())?;
+        let (bump_height, bump_normal) = match bump {
+            Some((bump, path)) if bump.texture.channel.is_some() || self.is_gray.get(&path) != Some(&false) => {
+                (Some((bump, path)), None)
+            }
+            other => (None, other),
+        };
+        let (height, depth, height_clamped) = self.height(material, bump_height)?;
+        let normal = self.normal(material, bump_normal)?;
+        let wrap =
+            self.options.wrap.unwrap_or(if albedo_clamped || height_clamped { Wrap::Clamp } else { Wrap::Repeat });
+        let wrap = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp].iter().position(|w| *w == wrap).unwrap_or_default() as u8;
+        let plan = Plan { albedo, height, normal, wrap, depth: depth.to_bits() };
+        let has_maps = plan.maps().next().is_some();
+        Ok(has_maps.then_some(plan))
+    }
+
+    /// The file behind a texture line, if there is one; a missing one is warned of.
+    fn found<'r>(&mut self, texture: Option<&'r TextureRef>) -> Result<Option<(&'r TextureRef, PathBuf)>> {
+        let Some(texture) = texture else {
+            return Ok(None);
+        };
+        let name = &texture.texture.name;
+        let path = self.folder.resolve(name, &texture.path).map_err(|reason| texture.place().refuse(reason))?;
+        if path.is_none() {
+            let text = format_args!("{} '{name}' is missing; drawn without it", texture.keyword);
+            self.warnings.push(texture.place().remark(text));
+        }
+        Ok(path.map(|path| (texture, path)))
+    }
+
+    fn albedo(&mut self, material: &MtlMaterial) -> Result<(Option<Map>, bool)> {
+        if let Some(path) = self.replacements.albedo.clone() {
+            return Ok((Some(Map { path, kind: Kind::Color }), false));
+        }
+        let found = self.found(material.albedo.as_ref())?;
+        let is_clamped = found.as_ref().is_some_and(|(texture, _)| texture.texture.is_clamped);
+        Ok((found.map(|(_, path)| Map { path, kind: Kind::Color }), is_clamped))
+    }
+
+    fn height(
+        &mut self,
+        material: &MtlMaterial,
+        bump: Option<(&TextureRef, PathBuf)>,
+    ) -> Result<(Option<Map>, f32, bool)> {
+        let fallback = self.options.relief_depth.unwrap_or(DEFAULT_DEPTH);
+        if let Some(path) = self.replacements.height.clone() {
+            let kind = self.height_kind(None, [0.0, 1.0], false);
+            return Ok((Some(Map { path, kind }), fallback, false));
+        }
+        let Some((texture, path)) = self.found(material.height.as_ref())?.or(bump) else {
+            return Ok((None, fallback, false));
+        };
+        let line = &texture.texture;
+        // A negative -bm turns the relief over; the polygon stays its top.
+        let bump = line.bump.unwrap_or(DEFAULT_DEPTH);
+        let depth = self.options.relief_depth.unwrap_or(bump.abs().min(1.0));
+        if self.options.relief_depth.is_none() && bump.abs() > 1.0 {
+            self.warnings.push(texture.place().remark(format_args!("-bm {bump} is cut to a relief depth of 1 repeat")));
+        }
+        let (keyword, name) = (texture.keyword, &line.name);
+        self.choices.push(format!("material {}: height from {keyword} {name}, relief depth {depth}", material.name));
+        let kind = self.height_kind(line.channel, line.range, bump < 0.0);
+        Ok((Some(Map { path, kind }), depth, line.is_clamped))
+    }
+
+    fn height_kind(&self, channel: Option<Channel>, [base, gain]: [f32; 2], is_turned: bool) -> Kind {
+        let is_deep = self.options.height_sense == HeightSense::WhiteDeep;
+        let range = if is_deep != is_turned { [1.0 - base, -gain] } else { [base, gain] };
+        Kind::Height { channel, range: range.map(f32::to_bits) }
+    }
+
+    fn normal(&mut self, material: &MtlMaterial, bump: Option<(&TextureRef, PathBuf)>) -> Result<Option<Map>> {
+        let is_green_down = self.options.normal_y == NormalY::Down;
+        let kind = |strength: f32| Kind::Normal { strength: strength.to_bits(), is_green_down };
+        if !self.options.keep_normals {
+            return Ok(None);
+        }
+        if let Some(path) = self.replacements.normal.clone() {
+            return Ok(Some(Map { path, kind: kind(1.0) }));
+        }
+        let Some((texture, path)) = self.found(material.normal.as_ref())?.or(bump) else {
+            return Ok(None);
+        };
+        let (keyword, name) = (texture.keyword, &texture.texture.name);
+        self.choices.push(format!("material {}: normals from {keyword} {name}", material.name));
+        Ok(Some(Map { path, kind: kind(texture.texture.bump.unwrap_or(1.0)) }))
+    }
+}
+
+/// The path of a file that the caller named.
+fn real_path(path: &Path) -> Result<PathBuf> {
+    files::open(path)?;
+    fs::canonicalize(path).map_err(|error| Error::file(path, files::plain(&error)))
+}

@@ -1,0 +1,141 @@
+//! Planned maps to shared surfaces.
+//!
+//! Input: a [`Plan`] for every material. Every image file is decoded once, in parallel, and every different plan becomes
+//! one [`Surface`]. What all of that needs is estimated from the heads of the files before any is decoded.
+
+use super::decode::{self, ImageInfo, ImageLimits, Samples};
+use super::load::LoadOptions;
+use super::plan::{Kind, Map, Plan};
+use crate::error::{Error, Result};
+use crate::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Bytes of a texel in all levels, each also transposed: two words, a third for normals, 4/3 for the smaller levels.
+const STORED_BYTES: u64 = 22;
+const STORED_BYTES_WITH_NORMALS: u64 = 32;
+/// Bytes of a texel while its surface is built: unpacked words and their transposed copy.
+const BUILD_BYTES: u64 = 24;
+/// Bytes of a texel of a decoded map: three 16-bit numbers at most.
+const MAP_BYTES: u64 = 6;
+
+enum MapImage {
+    Color(ColorImage),
+    Height(HeightImage),
+    Normal(NormalImage),
+}
+
+/// The limits of one image.
+pub(super) fn image_limits(options: &LoadOptions) -> ImageLimits {
+    ImageLimits { side: options.max_image_side.min(32768), bytes: u64::from(options.max_image_mib) << 20 }
+}
+
+/// The surface of each plan; equal plans share one.
+///
+/// # Errors
+/// Names the image that cannot be read or the limit that is exceeded.
+pub(super) fn build(plans: &BTreeSet<Plan>, options: &LoadOptions) -> Result<BTreeMap<Plan, Arc<Surface>>> {
+    let files = kinds_by_file(plans);
+    if files.len() > options.max_textures as usize {
+        let reason = format!("the scene names {} texture files, more than {}", files.len(), options.max_textures);
+        return Err(Error::setting("max_textures", reason));
+    }
+    let limits = image_limits(options);
+    let paths: Vec<&Path> = files.keys().copied().collect();
+    let infos: Vec<_> = paths.par_iter().map(|path| decode::probe(path, limits)).collect();
+    let infos: Vec<ImageInfo> = infos.into_iter().collect::<Result<_>>()?;
+    check_memory(plans, &paths.iter().copied().zip(infos).collect(), options)?;
+    let decoded: Vec<_> = files.par_iter().map(|(path, kinds)| decode_all(path, kinds, limits)).collect();
+    let mut maps = BTreeMap::new();
+    for of_file in decoded {
+        maps.extend(of_file?);
+    }
+    let mut left: Vec<&Plan> = plans.iter().rev().collect();
+    let mut surfaces = BTreeMap::new();
+    while let Some(plan) = left.pop() {
+        // The last plan that uses a map takes it, so that two copies exist as briefly as possible.
+        let is_used_later = |map: &Map| left.iter().any(|plan| plan.maps().any(|other| other == map));
+        let surface = surface(plan, &mut maps, is_used_later, options.keep_normals)?;
+        surfaces.insert(plan.clone(), Arc::new(surface));
+    }
+    Ok(surfaces)
+}
+
+/// Every file once, with all the ways in which it is read.
+fn kinds_by_file(plans: &BTreeSet<Plan>) -> BTreeMap<&Path, BTreeSet<&Kind>> {
+    let mut files: BTreeMap<&Path, BTreeSet<&Kind>> = BTreeMap::new();
+    for map in plans.iter().flat_map(Plan::maps) {
+        files.entry(&map.path).or_default().insert(&map.kind);
+    }
+    files
+}
+
+/// Refuses a scene whose textures would take too much memory, before any is decoded.
+fn check_memory(plans: &BTreeSet<Plan>, infos: &BTreeMap<&Path, ImageInfo>, options: &LoadOptions) -> Result<()> {
+    let num_texels = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
+    let images: u64 = infos.values().map(|info| info.num_bytes.saturating_add(num_texels(info.size) * MAP_BYTES)).sum();
+    let (mut stored, mut largest) = (0, 0);
+    let per_texel = if options.keep_normals { STORED_BYTES_WITH_NORMALS } else { STORED_BYTES };
+    for plan in plans {
+        let sizes = plan.maps().filter_map(|map| infos.get(map.path.as_path())).map(|info| info.size);
+        let size = sizes.fold([1, 1], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+        let num = num_texels(size) * if plan.is_mirrored() { 4 } else { 1 };
+        stored += num * per_texel;
+        largest = largest.max(num * BUILD_BYTES);
+    }
+    let mib = (images + stored + largest) >> 20;
+    if mib > u64::from(options.max_image_mib) {
+        let reason = format!("the scene's textures need about {mib} MiB, more than {}", options.max_image_mib);
+        return Err(Error::setting("max_image_mib", reason));
+    }
+    Ok(())
+}
+
+fn decode_all(path: &Path, kinds: &BTreeSet<&Kind>, limits: ImageLimits) -> Result<Vec<(Map, MapImage)>> {
+    let samples = decode::decode(path, limits)?;
+    let map = |kind: &Kind| (Map { path: path.into(), kind: kind.clone() }, convert(&samples, kind));
+    Ok(kinds.iter().map(|kind| map(kind)).collect())
+}
+
+fn convert(samples: &Samples, kind: &Kind) -> MapImage {
+    match *kind {
+        Kind::Color => MapImage::Color(samples.color()),
+        Kind::Height { channel, range } => MapImage::Height(samples.height(channel, range.map(f32::from_bits))),
+        Kind::Normal { strength, is_green_down } => {
+            let green = if is_green_down { -1.0 } else { 1.0 };
+            MapImage::Normal(samples.normal(f32::from_bits(strength), green))
+        }
+    }
+}
+
+fn surface(
+    plan: &Plan,
+    images: &mut BTreeMap<Map, MapImage>,
+    is_used_later: impl Fn(&Map) -> bool,
+    keep_normals: bool,
+) -> Result<Surface> {
+    let (wrap, relief_depth) = (plan.wrap(), plan.relief_depth());
+    let mut maps = SurfaceMaps { wrap, relief_depth, keep_normals, ..SurfaceMaps::default() };
+    for map in plan.maps() {
+        let image = if is_used_later(map) { images.get(map).map(MapImage::copy) } else { images.remove(map) };
+        match image {
+            Some(MapImage::Color(image)) => maps.albedo = Some(image),
+            Some(MapImage::Height(image)) => maps.height = Some(image),
+            Some(MapImage::Normal(image)) => maps.normal = Some(image),
+            None => {}
+        }
+    }
+    Surface::new(maps)
+}
+
+impl MapImage {
+    fn copy(&self) -> Self {
+        match self {
+            Self::Color(image) => Self::Color(image.clone()),
+            Self::Height(image) => Self::Height(image.clone()),
+            Self::Normal(image) => Self::Normal(image.clone()),
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! The grammar of a texture line: `[-option value…] file name [-option value…]`.
+//!
+//! Options may stand before or after the name, the name may hold spaces, and backslashes are turned into slashes.
+
+/// Which channel of an image serves as the height (`-imfchan`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Channel {
+    Red,
+    Green,
+    Blue,
+    /// The alpha channel; 1 everywhere in an image without one.
+    Matte,
+    /// Rec. 709 luma of the stored values.
+    Luma,
+}
+
+/// A texture line taken apart.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct TextureLine {
+    /// The file's name with forward slashes, as far as it is relative to the file that names it.
+    pub(super) name: String,
+    /// `-bm`: relief depth, or strength of a normal map.
+    pub(super) bump: Option<f32>,
+    /// `-s`: repeats along u and v.
+    pub(super) scale: [f32; 2],
+    /// `-o`: shift along u and v, in repeats.
+    pub(super) offset: [f32; 2],
+    /// `-mm`: base and gain.
+    pub(super) range: [f32; 2],
+    /// `-clamp on`.
+    pub(super) is_clamped: bool,
+    /// `-imfchan`.
+    pub(super) channel: Option<Channel>,
+    /// Options that have no effect here, by name.
+    pub(super) unsupported: Vec<String>,
+}
+
+impl TextureLine {
+    fn plain() -> Self {
+        let (scale, offset, range) = ([1.0; 2], [0.0; 2], [0.0, 1.0]);
+        Self {
+            name: String::new(),
+            bump: None,
+            scale,
+            offset,
+            range,
+            is_clamped: false,
+            channel: None,
+            unsupported: vec![],
+        }
+    }
+
+    /// Reads what follows the keyword. An empty name is left to the caller.
+    ///
+    /// # Errors
+    /// Names the option whose value is wrong.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let mut line = Self::plain();
+        let mut first = 0;
+        // The last word before a trailing option is the name: an option never takes it.
+        while first + 1 < words.len() && is_option(words[first]) {
+            first += line.take_option(&words[first..words.len() - 1])?;
+        }
+        let end = (first + 1..words.len()).find(|&i| is_all_options(&words[i..])).unwrap_or(words.len());
+        let mut next = end;
+        while next < words.len() {
+            next += line.take_option(&words[next..])?;
+        }
+        line.name = name_between(text, words.get(first..end).unwrap_or_default());
+        Ok(line)
+    }
+
+    /// Takes one option and its values off the front; returns how many words these are.
+    fn take_option(&mut self, words: &[&str]) -> Result<usize, String> {
+        let option = words[0].to_ascii_lowercase();
+        let numbers = numbers_after(&words[1..], most_numbers(&option))?;
+        let needs = |num: usize| {
+            if numbers.len() < num { Err(format!("option {option} needs {num} number(s)")) } else { Ok(()) }
+        };
+        let mut num_words = numbers.len() + 1;
+        match option.as_str() {
+            "-bm" => needs(1).map(|()| self.bump = Some(numbers[0]))?,
+            "-s" => needs(1).map(|()| self.scale = [numbers[0], *numbers.get(1).unwrap_or(&1.0)])?,
+            "-o" => needs(1).map(|()| self.offset = [numbers[0], *numbers.get(1).unwrap_or(&0.0)])?,
+            "-mm" => needs(2).map(|()| self.range = [numbers[0], numbers[1]])?,
+            "-clamp" => {
+                self.is_clamped = words.get(1).is_some_and(|w| w.eq_ignore_ascii_case("on"));
+                num_words += usize::from(words.get(1).is_some_and(|w| is_switch(w)));
+            }
+            "-imfchan" => {
+                self.channel = Some(channel(words.get(1).copied().unwrap_or_default())?);
+                num_words += 1;
+            }
+            _ => {
+                num_words += usize::from(takes_word(&option, words.get(1).copied().unwrap_or_default()));
+                self.unsupported.push(option);
+            }
+        }
+        Ok(num_words.min(words.len()))
+    }
+}
+
+/// The text of `words`, with the spaces between them as they are in `text`.
+fn name_between(text: &str, words: &[&str]) -> String {
+    let (Some(first), Some(last)) = (words.first(), words.last()) else {
+        return String::new();
+    };
+    let start = first.as_ptr() as usize - text.as_ptr() as usize;
+    let end = last.as_ptr() as usize - text.as_ptr() as usize + last.len();
+    text[start..end].trim_matches('"').replace('\\', "/")
+}
+
+fn is_option(word: &str) -> bool {
+    let letters = word.strip_prefix('-').unwrap_or_default();
+    !letters.is_empty() && letters.chars().all(|c| c.is_ascii_alphabetic())
+}
+
+/// Whether `words` are options that the format knows, and their values, to the end.
+fn is_all_options(words: &[&str]) -> bool {
+    let mut next = 0;
+    while next < words.len() {
+        let option = words[next].to_ascii_lowercase();
+        if most_numbers(&option) == 0 && !takes_word(&option, "on") {
+            return false;
+        }
+        let values = &words[next + 1..];
+        let num_numbers = values.iter().take(most_numbers(&option)).take_while(|w| w.parse::<f32>().is_ok()).count();
+        let num_words = values.first().map_or(0, |w| usize::from(takes_word(&option, w)));
+        next += 1 + num_numbers.max(num_words);
+    }
+    true
+}
+
+/// How many numbers may follow an option.
+fn most_numbers(option: &str) -> usize {
+    match option {
+        "-s" | "-o" | "-t" => 3,
+        "-mm" => 2,
+        "-bm" | "-boost" | "-texres" => 1,
+        _ => 0,
+    }
+}
+
+/// Whether `word` is the value, not a number, of an option.
+fn takes_word(option: &str, word: &str) -> bool {
+    match option {
+        "-clamp" | "-blendu" | "-blendv" | "-cc" => is_switch(word),
+        "-imfchan" | "-type" | "-colorspace" => true,
+        _ => false,
+    }
+}
+
+fn is_switch(word: &str) -> bool {
+    word.eq_ignore_ascii_case("on") || word.eq_ignore_ascii_case("off")
+}
+
+fn channel(word: &str) -> Result<Channel, String> {
+    match word.to_ascii_lowercase().as_str() {
+        // A depth image has its depth in every channel.
+        "r" | "z" => Ok(Channel::Red),
+        "g" => Ok(Channel::Green),
+        "b" => Ok(Channel::Blue),
+        "m" => Ok(Channel::Matte),
+        "l" => Ok(Channel::Luma),
+        _ => Err(format!("option -imfchan takes r, g, b, m, l or z, not '{word}'")),
+    }
+}
+
+fn numbers_after(words: &[&str], most: usize) -> Result<Vec<f32>, String> {
+    let parsed = words.iter().take(most).map_while(|word| word.parse::<f32>().ok().map(|number| (word, number)));
+    parsed
+        .map(
+            |(word, number)| {
+                if number.is_finite() { Ok(number) } else { Err(format!("'{word}' is not a finite number")) }
+            },
+        )
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> TextureLine {
+        TextureLine::parse(text).expect("a valid line")
+    }
+
+    #[test]
+    fn options_before_and_after_the_name() {
+        for text in ["-bm 0.1 -clamp on a b.png", "a b.png -bm 0.1 -clamp on", "-bm 0.1 a b.png -clamp on"] {
+            let line = parse(text);
+            assert_eq!((line.name.as_str(), line.bump, line.is_clamped), ("a b.png", Some(0.1), true), "{text}");
+        }
+    }
+
+    #[test]
+    fn scale_offset_range_channel() {
+        let line = parse("-s 2 3 1 -o 0.5 0.25 -mm 0.1 0.8 -imfchan G h.png");
+        assert_eq!((line.scale, line.offset, line.range), ([2.0, 3.0], [0.5, 0.25], [0.1, 0.8]));
+        assert_eq!((line.channel, line.name.as_str()), (Some(Channel::Green), "h.png"));
+        assert_eq!(parse("-s 4 h.png").scale, [4.0, 1.0]);
+    }
+
+    #[test]
+    fn unsupported_options_are_skipped_and_named() {
+        let line = parse("-blendu off -blendv on -boost 2 -t 1 1 1 -texres 256 -type sphere -colorspace sRGB x.png");
+        assert_eq!(line.name, "x.png");
+        assert_eq!(line.unsupported, ["-blendu", "-blendv", "-boost", "-t", "-texres", "-type", "-colorspace"]);
+        assert_eq!(parse("-frob x.png").unsupported, ["-frob"]);
+    }
+
+    #[test]
+    fn names_keep_spaces_and_lose_backslashes() {
+        assert_eq!(parse(r"tex\my  stone - v2.png").name, "tex/my  stone - v2.png");
+        assert_eq!(parse("\"quoted name.png\"").name, "quoted name.png");
+        assert_eq!(parse("-o 1 2 3").name, "3", "the last word is the name");
+        assert_eq!(parse("-bm.png").name, "-bm.png");
+        assert_eq!(parse("").name, "");
+    }
+
+    #[test]
+    fn wrong_values_are_refused() {
+        for text in ["-bm x.png y.png", "-mm 1 x.png", "-imfchan q x.png", "-bm nan x.png", "x.png -s inf"] {
+            assert!(TextureLine::parse(text).is_err(), "{text}");
+        }
+    }
+}
