@@ -18,6 +18,7 @@ pub(crate) struct Cli {
 }
 
 #[derive(Subcommand)]
+#[expect(clippy::large_enum_variant, reason = "there is one, on the stack of main")]
 pub(crate) enum Command {
     /// Draw a scene to an image file (what happens without a subcommand)
     Render(RenderOptions),

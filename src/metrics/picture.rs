@@ -27,7 +27,7 @@ impl Picture {
         if pixels.len() as u64 != u64::from(width) * u64::from(height) || pixels.is_empty() {
             return Err(Error::scene("picture", "the number of pixels must be width times height and above 0"));
         }
-        pixels.iter_mut().flatten().for_each(|value| *value = value.max(0.0).min(1.0));
+        pixels.iter_mut().flatten().for_each(|value| *value = clamped(*value));
         Ok(Self { width, height, pixels })
     }
 
@@ -68,7 +68,7 @@ impl From<&Frame> for Picture {
     /// The frame without rounding to 8 bits; linear values above 1 are clamped, as they are in 8-bit files.
     fn from(frame: &Frame) -> Self {
         let encode = |&[r, g, b, opacity]: &[f32; 4]| {
-            let opacity = opacity.max(0.0).min(1.0);
+            let opacity = clamped(opacity);
             // Where nothing is seen there is no colour; the divisor only avoids 0 / 0.
             let divisor = if opacity > 0.0 { opacity } else { 1.0 };
             let [r, g, b] = [r, g, b].map(|c| srgb_from_linear(c / divisor));
@@ -76,6 +76,11 @@ impl From<&Frame> for Picture {
         };
         Self { width: frame.width, height: frame.height, pixels: frame.pixels.par_iter().map(encode).collect() }
     }
+}
+
+/// `value` within 0 to 1; NaN, which `f32::clamp` would keep, gives 0.
+fn clamped(value: f32) -> f32 {
+    if value > 0.0 { value.min(1.0) } else { 0.0 }
 }
 
 /// A result whose error is said of a file.

@@ -11,7 +11,7 @@
 /// Linear light, 0 to 1, from an sRGB-encoded value, 0 to 1; clamped, NaN gives 0.
 #[must_use]
 pub fn linear_from_srgb(encoded: f32) -> f32 {
-    decode(f64::from(encoded.max(0.0).min(1.0))) as f32
+    decode(f64::from(clamped(encoded, 0.0))) as f32
 }
 
 /// Linear light, 0 to 1, from an 8-bit sRGB-encoded value: [`linear_from_srgb`] of `encoded / 255`, from a table.
@@ -32,19 +32,24 @@ pub fn linear_from_srgb8(encoded: u8) -> f32 {
 /// An sRGB-encoded value, 0 to 1, from linear light; clamped, NaN gives 0.
 #[must_use]
 pub fn srgb_from_linear(linear: f32) -> f32 {
-    encode(f64::from(linear.max(0.0).min(1.0))) as f32
+    encode(f64::from(clamped(linear, 0.0))) as f32
 }
 
 /// The nearest 8-bit sRGB-encoded value of linear light; clamped, NaN gives 0.
 ///
 /// A byte is the number of thresholds at or below the light. Light is cut into steps so fine that each holds at most
-/// one threshold, and [`BELOW`] knows how many lie below each step.
+/// one threshold, and `BELOW` knows how many lie below each step.
 #[must_use]
 pub fn srgb8_from_linear(linear: f32) -> u8 {
-    let linear = linear.max(FIRST_STEP).min(1.0);
+    let linear = clamped(linear, FIRST_STEP);
     let below = BELOW[step(linear)];
     // Step 255 is full: the table of thresholds ends with an infinity.
     below + u8::from(linear >= THRESHOLDS[below as usize])
+}
+
+/// `value` within `least` to 1; NaN, which `f32::clamp` would keep, gives `least`.
+fn clamped(value: f32, least: f32) -> f32 {
+    if value > least { value.min(1.0) } else { least }
 }
 
 /// A power of two below the least threshold, 0.5 / 255 / 12.92.
