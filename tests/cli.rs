@@ -101,7 +101,7 @@ fn bad_images_are_refused() {
     let whole = fs::read(folder.path("whole.png")).unwrap();
     folder.put("cut.png", &whole[..whole.len() / 2]);
     folder.put("text.png", "not a picture");
-    for option in ["--albedo", "--height", "--normal"] {
+    for option in ["--albedo", "--height", "--lighting lit --normal"] {
         folder.refuses(&format!("quad.obj {option} cut.png -o a.png"), &["cut.png"]);
         folder.refuses(&format!("quad.obj {option} text.png -o a.png"), &["text.png"]);
         folder.refuses(&format!("quad.obj {option} missing.png -o a.png"), &["missing.png"]);
@@ -148,6 +148,8 @@ fn bad_options_are_refused() {
         ("--point-light 1,2,3,nan,0,0", "--point-light"),
         ("--ambient -1", "--ambient"),
         ("--relief-depth 2", "--relief-depth"),
+        ("--max-image-side 0", "--max-image-side"),
+        ("--max-triangles 1", "--max-triangles"),
         ("--threads 99999", "--threads"),
         ("--repeat 0", "--repeat"),
         ("--nonsense", "--nonsense"),
@@ -243,7 +245,8 @@ fn every_option_is_accepted() {
         "quad.obj -o a.png --size 8x8 --filter visible --visible resolved --parallax on --derivatives flat --formulas printed \
          --texel-budget 64 --max-anisotropy 8 --samples 2 --lines 8 --far-field off --far-field-mib 1 --lighting lit --cull \
          --msaa 1 --tile 8 --albedo map.png --height map.png --normal map.png --height-sense white-deep --relief-depth 0.1 \
-         --normal-y down --wrap mirror --allow-outside --eye -1,-1,3 --target -0.1,0,0 --up 0,1,-0.1 --fov 40 --near 0.1 \
+         --normal-y down --wrap mirror --allow-outside \
+         --max-image-side 64 --max-image-mib 64 --max-triangles 9 --max-textures 9 --eye -1,-1,3 --target -0.1,0,0 --up 0,1,-0.1 --fov 40 --near 0.1 \
          --sun -1,1,1 --sun 1,1,1,0.5,0.5,0.5 --point-light -1,0,2 --ambient 0.1,0.1,0.2 --background skyblue --threads 1 \
          --quiet --repeat 2 --stats stats.json",
     );

@@ -9,6 +9,7 @@ use basrelief::{Camera, Light, Scene};
 use clap::Args;
 use glam::Vec3;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
 #[derive(Args)]
 pub(crate) struct SceneOptions {
@@ -17,6 +18,8 @@ pub(crate) struct SceneOptions {
     obj: Option<PathBuf>,
     #[command(flatten)]
     maps: MapOptions,
+    #[command(flatten)]
+    limits: LimitOptions,
     #[command(flatten)]
     camera: CameraOptions,
     #[command(flatten)]
@@ -52,6 +55,28 @@ struct MapOptions {
     allow_outside: bool,
 }
 
+/// What a limit is where it is not given.
+static DEFAULT: LazyLock<LoadOptions> = LazyLock::new(LoadOptions::default);
+
+#[derive(Args)]
+#[command(next_help_heading = "Limits for SCENE.obj, beyond which it is refused")]
+struct LimitOptions {
+    /// Most pixels of an image's side, 1 to 32768
+    #[arg(long, value_name = "N", default_value_t = DEFAULT.max_image_side, requires = "obj",
+          value_parser = clap::value_parser!(u32).range(1..=32768))]
+    max_image_side: u32,
+    /// Most memory of all images together in MiB while they are read, about 60 bytes a texel
+    #[arg(long, value_name = "N", default_value_t = DEFAULT.max_image_mib, requires = "obj",
+          value_parser = clap::value_parser!(u32).range(1..))]
+    max_image_mib: u32,
+    /// Most triangles, and most v, vt and vn lines each
+    #[arg(long, value_name = "N", default_value_t = DEFAULT.max_triangles, requires = "obj")]
+    max_triangles: u64,
+    /// Most image files
+    #[arg(long, value_name = "N", default_value_t = DEFAULT.max_textures, requires = "obj")]
+    max_textures: u32,
+}
+
 #[derive(Args)]
 #[command(next_help_heading = "Camera (what is not given frames the scene)")]
 struct CameraOptions {
@@ -75,7 +100,8 @@ struct CameraOptions {
 #[derive(Args)]
 #[command(next_help_heading = "Light and background")]
 struct LightOptions {
-    /// Light from far away: the direction towards it, and its linear colour, 1,1,1 where not given; may be repeated
+    /// Light from far away: the direction towards it, and its linear colour, 1,1,1 if not given; may be repeated; takes
+    /// the place of the scene's own lights
     #[arg(long, value_name = "X,Y,Z[,R,G,B]", value_parser = values::sun, allow_hyphen_values = true)]
     sun: Vec<(Vec3, Vec3)>,
     /// Light from a point: its place, and its linear colour at a distance of 1; may be repeated
@@ -100,12 +126,31 @@ impl SceneOptions {
     /// Reads or makes the scene and sets what the options say.
     pub(crate) fn load(&self, is_lit: bool) -> Result<Loaded, Refusal> {
         let mut loaded = match &self.obj {
-            Some(obj) => scene::load(obj, &self.maps.load_options(is_lit)).map_err(|e| refusal(&e))?,
+            Some(obj) => scene::load(obj, &self.load_options(is_lit)).map_err(|e| refusal(&e))?,
             None => built_in(),
         };
         self.camera.place(&mut loaded.scene.camera);
         self.lights.set(&mut loaded.scene);
         Ok(loaded)
+    }
+
+    fn load_options(&self, is_lit: bool) -> LoadOptions {
+        let (maps, limits) = (&self.maps, &self.limits);
+        LoadOptions {
+            albedo: maps.albedo.clone(),
+            height: maps.height.clone(),
+            normal: maps.normal.clone(),
+            height_sense: maps.height_sense.unwrap_or_default(),
+            relief_depth: maps.relief_depth,
+            normal_y: maps.normal_y.unwrap_or_default(),
+            wrap: maps.wrap,
+            keep_normals: is_lit,
+            allow_outside: maps.allow_outside,
+            max_image_side: limits.max_image_side,
+            max_image_mib: limits.max_image_mib,
+            max_triangles: limits.max_triangles,
+            max_textures: limits.max_textures,
+        }
     }
 }
 
@@ -113,21 +158,6 @@ impl SceneOptions {
 fn built_in() -> Loaded {
     let choices = vec!["no SCENE.obj given: drawing the built-in scene".into()];
     Loaded { scene: scene::builtin(), choices, ..Loaded::default() }
-}
-
-impl MapOptions {
-    fn load_options(&self, is_lit: bool) -> LoadOptions {
-        LoadOptions {
-            albedo: self.albedo.clone(),
-            height: self.height.clone(),
-            normal: self.normal.clone(),
-            height_sense: self.height_sense.unwrap_or_default(),
-            relief_depth: self.relief_depth,
-            normal_y: self.normal_y.unwrap_or_default(),
-            wrap: self.wrap,
-            keep_normals: is_lit,
-        }
-    }
 }
 
 impl CameraOptions {
@@ -146,28 +176,17 @@ impl CameraOptions {
 }
 
 impl LightOptions {
+    /// Lights that are given take the place of the scene's own.
     fn set(&self, scene: &mut Scene) {
-        if !self.sun.is_empty() || !self.point_light.is_empty() {
-            let suns = self.sun.iter().map(|&(to_light, intensity)| Light::Directional { to_light, intensity });
-            let points = self.point_light.iter().map(|&(position, intensity)| Light::Point { position, intensity });
-            scene.lights = suns.chain(points).collect();
-        } else if scene.lights.is_empty() {
-            scene.lights = vec![over_the_left_shoulder(&scene.camera)];
-        }
-        if scene.ambient == Vec3::ZERO {
-            scene.ambient = Vec3::splat(0.15);
+        let suns = self.sun.iter().map(|&(to_light, intensity)| Light::Directional { to_light, intensity });
+        let points = self.point_light.iter().map(|&(position, intensity)| Light::Point { position, intensity });
+        let given: Vec<Light> = suns.chain(points).collect();
+        if !given.is_empty() {
+            scene.lights = given;
         }
         scene.ambient = self.ambient.unwrap_or(scene.ambient);
         scene.background = self.background.unwrap_or(scene.background);
     }
-}
-
-/// The light of a scene that has none: grazing enough to show relief.
-fn over_the_left_shoulder(camera: &Camera) -> Light {
-    let [right, up, forward] = camera.axes();
-    let to_light = up - right * 0.8 - forward * 0.4;
-    let to_light = if to_light.is_finite() { to_light } else { Vec3::Y };
-    Light::Directional { to_light, intensity: Vec3::splat(0.85) }
 }
 
 #[cfg(test)]
@@ -203,9 +222,10 @@ mod tests {
 
     #[test]
     fn lights_replace_the_scenes_own() {
-        let mut scene = Scene::default();
+        let own = Light::Point { position: Vec3::ONE, intensity: Vec3::ONE };
+        let mut scene = Scene { lights: vec![own], ambient: Vec3::ONE, ..Scene::default() };
         parse("").unwrap().lights.set(&mut scene);
-        assert!(scene.lights.len() == 1 && scene.ambient == Vec3::splat(0.15));
+        assert!(scene.lights == [own] && scene.ambient == Vec3::ONE);
         let options = parse("--sun -1,2,3 --point-light 1,2,3,4,5,6 --sun 1,0,0 --ambient 0").unwrap();
         assert!(options.has_lights());
         options.lights.set(&mut scene);
@@ -213,8 +233,13 @@ mod tests {
     }
 
     #[test]
+    fn no_options_are_the_defaults_of_the_library() {
+        assert_eq!(parse("").unwrap().load_options(false), LoadOptions::default());
+    }
+
+    #[test]
     fn options_of_files_need_a_file() {
-        for line in ["--height a.png", "--wrap clamp", "--allow-outside", "--relief-depth 0.1"] {
+        for line in ["--height a.png", "--wrap clamp", "--allow-outside", "--relief-depth 0.1", "--max-textures 3"] {
             assert!(parse(line).err().unwrap().contains("SCENE.obj"), "{line}");
             assert!(parse(&format!("a.obj {line}")).is_ok(), "{line}");
         }
