@@ -131,7 +131,7 @@ impl Renderer {
             shade_us.fetch_add(((clock() - before) * 1e3) as u64, Ordering::Relaxed);
             color
         };
-        let mut frame = Frame::new(settings.width, settings.height);
+        let mut frame = Frame::filled(settings.width, settings.height, [0.0; 4]);
         let counts = rasterizer.draw(geometry, scene, settings, &shade, &mut frame);
         let shade_ms = shade_us.into_inner() as f64 * 1e-3;
         let [texels_tested, texels_visible] = shader.num_texels();

@@ -10,8 +10,8 @@ mod pyramid;
 mod resample;
 mod surface;
 
-pub use color::{linear_from_srgb, srgb_from_linear};
+pub use color::{linear_from_srgb, linear_from_srgb8, srgb_from_linear, srgb8_from_linear};
 pub use image::{ColorImage, HeightImage, NormalImage};
 pub use level::Level;
 pub use surface::{Surface, SurfaceMaps, Wrap};
-pub(crate) use level::{APRON, unpack_normal};
+pub(crate) use level::unpack_normal;

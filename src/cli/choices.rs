@@ -1,0 +1,95 @@
+//! Options that are one of a few words.
+
+use basrelief::scene::{HeightSense, NormalY};
+use basrelief::texture::Wrap;
+use basrelief::{Derivatives, Filter, Formulas, Lighting, Visibility};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+/// A word, what it stands for, and its help.
+pub(crate) type Choice<T> = (&'static str, T, &'static str);
+
+pub(crate) const FILTERS: &[Choice<Filter>] = &[
+    ("nearest", Filter::Nearest, "One texel; flickers and shows stairs"),
+    ("bilinear", Filter::Bilinear, "Four texels; flickers in the distance"),
+    ("trilinear", Filter::Trilinear, "Mip levels; blurs at grazing angles"),
+    ("ewa", Filter::Ewa, "All texels of the pixel's ellipse, hidden ones too"),
+    ("visible", Filter::Visible, "The texels of the ellipse that the relief does not hide"),
+    ("horizon", Filter::Horizon, "Visible texels by their visible length, in one sweep"),
+    ("parallax", Filter::Parallax, "Common practice: 32 steps, then 16x anisotropy; --samples rays a pixel"),
+    ("truth", Filter::Truth, "Supersampled: --samples exact rays a pixel; slow"),
+];
+
+pub(crate) const VISIBILITIES: &[Choice<Visibility>] = &[
+    ("exact", Visibility::Exact, "A ray from each texel to the eye"),
+    ("two-ended", Visibility::TwoEnded, "Rows from both ends until the first hidden texel; faster"),
+    ("resolved", Visibility::Resolved, "A hidden texel leads to the one that covers it"),
+];
+
+pub(crate) const DERIVATIVES: &[Choice<Derivatives>] = &[
+    ("flat", Derivatives::Flat, "Of the polygon's texture coordinates: formula (2)"),
+    ("relief", Derivatives::Relief, "Of the coordinates that the relief displaces: formula (3)"),
+];
+
+pub(crate) const FORMULAS: &[Choice<Formulas>] = &[
+    ("meant", Formulas::Meant, "As their derivation demands"),
+    ("printed", Formulas::Printed, "Letter by letter, misprints included"),
+];
+
+pub(crate) const LIGHTING: &[Choice<Lighting>] = &[
+    ("unlit", Lighting::Unlit, "The surface's colour alone"),
+    ("lit", Lighting::Lit, "Ambient, diffuse and highlights"),
+];
+
+pub(crate) const MSAA: &[Choice<u32>] =
+    &[("1", 1, "Edges as stairs"), ("4", 4, "Smooth edges"), ("8", 8, "Smoother edges")];
+
+pub(crate) const HEIGHT_SENSES: &[Choice<HeightSense>] = &[
+    ("white-high", HeightSense::WhiteHigh, "A height map: white lies on the polygon"),
+    ("white-deep", HeightSense::WhiteDeep, "A depth map: white is deepest"),
+];
+
+pub(crate) const NORMAL_YS: &[Choice<NormalY>] =
+    &[("up", NormalY::Up, "As in OpenGL, glTF and Blender"), ("down", NormalY::Down, "As in DirectX and Unreal")];
+
+pub(crate) const WRAPS: &[Choice<Wrap>] = &[
+    ("repeat", Wrap::Repeat, "The texture again"),
+    ("mirror", Wrap::Mirror, "The texture mirrored, then again"),
+    ("clamp", Wrap::Clamp, "The texels of the edge"),
+];
+
+pub(crate) const ON_OFF: &[Choice<bool>] = &[("on", true, ""), ("off", false, "")];
+
+/// A parser of one of `choices`.
+pub(crate) fn one_of<T>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let words = choices.iter().map(|&(word, _, help)| match help {
+        "" => PossibleValue::new(word),
+        _ => PossibleValue::new(word).help(help),
+    });
+    PossibleValuesParser::new(words).try_map(|given| {
+        let found = choices.iter().find(|(word, ..)| *word == given);
+        found.map(|&(_, value, _)| value).ok_or("is not known")
+    })
+}
+
+/// The word that stands for `value`.
+pub(crate) fn word<T: PartialEq>(choices: &'static [Choice<T>], value: &T) -> &'static str {
+    choices.iter().find(|(_, known, _)| known == value).map_or("?", |&(word, ..)| word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use basrelief::Settings;
+
+    #[test]
+    fn each_default_has_a_word() {
+        let settings = Settings::default();
+        assert_eq!(word(FILTERS, &settings.filter), "visible");
+        assert_eq!(word(VISIBILITIES, &settings.visibility), "exact");
+        assert_eq!(word(MSAA, &settings.msaa), "1");
+        assert_eq!(word(WRAPS, &Wrap::default()), "repeat");
+    }
+}

@@ -1,0 +1,81 @@
+//! The program around the library: one file for each subcommand, and what they share.
+//!
+//! Exit codes: 0 done, 1 a comparison below its bound, 2 refused with one line on stderr, 130 interrupted.
+
+mod args;
+mod choices;
+mod compare;
+mod output;
+mod progress;
+mod render;
+mod scene;
+mod settings;
+mod stats;
+mod values;
+mod version;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Why a subcommand ends early: one line for the user.
+type Refusal = String;
+
+/// Runs the subcommand that the command line names.
+pub(crate) fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(e) if e.use_stderr() => return refuse(&usage_line(&e)),
+        Err(help) => return print_help(&help),
+    };
+    output::finish_writing_on_interrupt();
+    let outcome = match cli.command.unwrap_or(Command::Render(cli.render)) {
+        Command::Render(options) => render::run(&options),
+        Command::Compare(options) => compare::run(&options),
+    };
+    outcome.unwrap_or_else(|refusal| refuse(&refusal))
+}
+
+fn refuse(text: &str) -> ExitCode {
+    eprintln!("basrelief: {}", one_line(text));
+    ExitCode::from(2)
+}
+
+fn print_help(help: &clap::Error) -> ExitCode {
+    // A closed pipe, as of `basrelief --help | head`, is no failure.
+    let _ = help.print();
+    ExitCode::SUCCESS
+}
+
+/// What clap has to say, without its hints on usage and help.
+fn usage_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
+    let lines: Vec<&str> = lines.filter(|line| !line.is_empty() && !line.starts_with("For more information")).collect();
+    lines.join(" ").replace(" tip: ", "; ").trim_start_matches("error: ").to_owned()
+}
+
+/// `text` with control characters, such as a line break in a file's name, made visible.
+fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn messages_are_one_line() {
+        assert_eq!(one_line("a\nb\u{1b}[1m"), "a\\nb\\u{1b}[1m");
+        for args in [&["x", "--filter", "no"][..], &["x", "--what"], &["x", "compare", "a"], &["x", "--size", "0x0"]] {
+            let line = usage_line(&Cli::try_parse_from(args).err().unwrap());
+            assert!(!line.contains('\n') && !line.contains("Usage") && !line.starts_with("error"), "{line}");
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The figures of `--stats`.
+
+use basrelief::{SIMD_LEVEL, Settings, Stats};
+use serde::Serialize;
+
+use super::choices::{FILTERS, word};
+
+/// One JSON object. Times are in milliseconds; those of a frame belong to the frame of the middle time.
+#[derive(Serialize)]
+pub(super) struct Report {
+    frame_ms: f64,
+    load_ms: f64,
+    geometry_ms: f64,
+    raster_ms: f64,
+    shade_ms: f64,
+    pixels_shaded: u64,
+    triangles_in: u64,
+    triangles_drawn: u64,
+    texels_tested: u64,
+    texels_visible: u64,
+    threads: usize,
+    simd: &'static str,
+    version: &'static str,
+    width: u32,
+    height: u32,
+    filter: &'static str,
+}
+
+impl Report {
+    /// The figures of the frame of the middle time (of an even number, the faster of the middle two).
+    pub(super) fn new(mut frames: Vec<(f64, Stats)>, load_ms: f64, threads: usize, settings: &Settings) -> Self {
+        frames.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let middle = frames.len().saturating_sub(1) / 2;
+        let (frame_ms, stats) = frames.into_iter().nth(middle).unwrap_or_default();
+        Self {
+            frame_ms,
+            load_ms,
+            geometry_ms: stats.geometry_ms,
+            raster_ms: stats.raster_ms,
+            shade_ms: stats.shade_ms,
+            pixels_shaded: stats.pixels_shaded,
+            triangles_in: stats.triangles_in,
+            triangles_drawn: stats.triangles_drawn,
+            texels_tested: stats.texels_tested,
+            texels_visible: stats.texels_visible,
+            threads,
+            simd: SIMD_LEVEL,
+            version: env!("CARGO_PKG_VERSION"),
+            width: settings.width,
+            height: settings.height,
+            filter: word(FILTERS, &settings.filter),
+        }
+    }
+
+    /// A line for people.
+    pub(super) fn line(&self) -> String {
+        let Self { width, height, filter, frame_ms, load_ms, threads, .. } = self;
+        let threads = if *threads == 1 { "1 thread".into() } else { format!("{threads} threads") };
+        format!("{width}x{height}, filter {filter}: {frame_ms:.1} ms on {threads}, after {load_ms:.0} ms of loading")
+    }
+
+    /// The object, on one line.
+    pub(super) fn json(&self) -> Result<Vec<u8>, super::Refusal> {
+        let mut json = serde_json::to_vec(self).map_err(|e| format!("--stats: {e}"))?;
+        json.push(b'\n');
+        Ok(json)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn middle_frame_is_reported() {
+        let frame = |ms: f64| (ms, Stats { shade_ms: ms / 2.0, ..Stats::default() });
+        for (times, expected) in [(&[3.0, 1.0, 2.0][..], 2.0), (&[4.0, 3.0, 1.0, 2.0], 2.0), (&[5.0], 5.0)] {
+            let frames = times.iter().map(|&ms| frame(ms)).collect();
+            let report = Report::new(frames, 1.0, 2, &Settings::default());
+            assert_eq!((report.frame_ms, report.shade_ms), (expected, expected / 2.0));
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! Options that are numbers, vectors, colours or sizes. Each parser says in a few words what it expected.
+
+use basrelief::texture::linear_from_srgb8;
+use glam::Vec3;
+
+/// Most pixels of a frame: 4 GiB of linear pixels.
+const MAX_PIXELS: u64 = 1 << 28;
+
+/// Width and height in pixels from `1280x720`.
+pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']).map(|(width, height)| [width, height].map(digits));
+    let Some([Some(width), Some(height)]) = sides else {
+        return Err("is not WIDTHxHEIGHT in pixels, such as 1280x720".into());
+    };
+    if ![width, height].iter().all(|side| (1..=32768).contains(side)) {
+        return Err("width and height must be within 1 to 32768 pixels".into());
+    }
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(format!("is more than {MAX_PIXELS} pixels"));
+    }
+    Ok([width, height])
+}
+
+/// A number without sign or blank.
+fn digits(text: &str) -> Option<u32> {
+    text.bytes().all(|b| b.is_ascii_digit()).then(|| text.parse().ok()).flatten()
+}
+
+/// A finite number within 1e18.
+pub(crate) fn number(text: &str) -> Result<f32, String> {
+    let value: f32 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
+    // Squares of larger numbers leave the range of f32.
+    if value.abs() <= 1e18 { Ok(value) } else { Err(format!("{value} is not within -1e18 to 1e18")) }
+}
+
+/// A number of degrees above 0 and below 180.
+pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
+    let value = number(text)?;
+    if value > 0.0 && value < 180.0 { Ok(value) } else { Err("must be above 0 and below 180 degrees".into()) }
+}
+
+/// A number above 0.
+pub(crate) fn above_zero(text: &str) -> Result<f32, String> {
+    let value = number(text)?;
+    if value > 0.0 { Ok(value) } else { Err("must be above 0".into()) }
+}
+
+/// A number above 0 and up to 1.
+pub(crate) fn fraction(text: &str) -> Result<f32, String> {
+    let value = above_zero(text)?;
+    if value <= 1.0 { Ok(value) } else { Err("must be above 0 and up to 1".into()) }
+}
+
+/// A number from 0 to 1.
+pub(crate) fn unit(text: &str) -> Result<f32, String> {
+    let value = number(text)?;
+    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err("must be within 0 to 1".into()) }
+}
+
+/// Decibels, 0 or more.
+pub(crate) fn decibels(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value >= 0.0 { Ok(f64::from(value)) } else { Err("must be 0 or more".into()) }
+}
+
+fn numbers(text: &str) -> Result<Vec<f32>, String> {
+    text.split(',').map(number).collect()
+}
+
+/// `X,Y,Z`.
+pub(crate) fn vector(text: &str) -> Result<Vec3, String> {
+    match numbers(text)?[..] {
+        [x, y, z] => Ok(Vec3::new(x, y, z)),
+        _ => Err("is not three numbers X,Y,Z".into()),
+    }
+}
+
+/// A direction `X,Y,Z` that is not zero.
+pub(crate) fn direction(text: &str) -> Result<Vec3, String> {
+    let value = vector(text)?;
+    if value.length_squared() >= 1e-30 { Ok(value) } else { Err("must not be zero".into()) }
+}
+
+/// Linear RGB from `R,G,B` or one number for all three.
+pub(crate) fn intensity(text: &str) -> Result<Vec3, String> {
+    match numbers(text)?[..] {
+        [gray] => bounded(Vec3::splat(gray)),
+        [r, g, b] => bounded(Vec3::new(r, g, b)),
+        _ => Err("is not one number or three numbers R,G,B".into()),
+    }
+}
+
+/// A light: its place or direction `X,Y,Z` and its linear RGB, 1 where `R,G,B` is left out.
+pub(crate) fn light(text: &str) -> Result<(Vec3, Vec3), String> {
+    match numbers(text)?[..] {
+        [x, y, z] => Ok((Vec3::new(x, y, z), Vec3::ONE)),
+        [x, y, z, r, g, b] => Ok((Vec3::new(x, y, z), bounded(Vec3::new(r, g, b))?)),
+        _ => Err("is not X,Y,Z or X,Y,Z,R,G,B".into()),
+    }
+}
+
+/// A light whose direction is not zero.
+pub(crate) fn sun(text: &str) -> Result<(Vec3, Vec3), String> {
+    let (to_light, intensity) = light(text)?;
+    if to_light.length_squared() < 1e-30 {
+        return Err("its direction must not be zero".into());
+    }
+    Ok((to_light, intensity))
+}
+
+fn bounded(intensity: Vec3) -> Result<Vec3, String> {
+    if intensity.min_element() >= 0.0 && intensity.max_element() <= 1e6 {
+        Ok(intensity)
+    } else {
+        Err("intensities must be within 0 to 1e6".into())
+    }
+}
+
+/// Names of colours, as CSS has them.
+const COLORS: &[(&str, [u8; 3])] = &[
+    ("black", [0, 0, 0]),
+    ("silver", [192, 192, 192]),
+    ("gray", [128, 128, 128]),
+    ("grey", [128, 128, 128]),
+    ("white", [255, 255, 255]),
+    ("maroon", [128, 0, 0]),
+    ("red", [255, 0, 0]),
+    ("orange", [255, 165, 0]),
+    ("purple", [128, 0, 128]),
+    ("magenta", [255, 0, 255]),
+    ("green", [0, 128, 0]),
+    ("lime", [0, 255, 0]),
+    ("olive", [128, 128, 0]),
+    ("yellow", [255, 255, 0]),
+    ("navy", [0, 0, 128]),
+    ("blue", [0, 0, 255]),
+    ("skyblue", [135, 206, 235]),
+    ("teal", [0, 128, 128]),
+    ("cyan", [0, 255, 255]),
+];
+
+/// Linear RGB and opacity from a colour's name, `#rgb`, `#rrggbb`, `R,G,B` of 0 to 255, or `transparent`.
+pub(crate) fn color(text: &str) -> Result<[f32; 4], String> {
+    let lower = text.trim().to_ascii_lowercase();
+    if lower == "transparent" {
+        return Ok([0.0; 4]);
+    }
+    let named = COLORS.iter().find(|(name, _)| *name == lower).map(|&(_, rgb)| rgb);
+    let rgb = named.or_else(|| lower.strip_prefix('#').and_then(hexadecimal)).or_else(|| decimal(&lower));
+    let [r, g, b] = rgb
+        .ok_or("is not a colour: use #rrggbb, R,G,B of 0 to 255, transparent, or a name such as white or skyblue")?
+        .map(linear_from_srgb8);
+    Ok([r, g, b, 1.0])
+}
+
+fn hexadecimal(text: &str) -> Option<[u8; 3]> {
+    let digits: Option<Vec<u8>> = text.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect();
+    match digits?[..] {
+        [r, g, b] => Some([r, g, b].map(|digit| digit * 17)),
+        [r, s, g, h, b, c] => Some([16 * r + s, 16 * g + h, 16 * b + c]),
+        _ => None,
+    }
+}
+
+fn decimal(text: &str) -> Option<[u8; 3]> {
+    let bytes: Option<Vec<u8>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    bytes?.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("1280x720"), Ok([1280, 720]));
+        for bad in
+            ["", "x", "12", "0x0", "0x5", "12x", "-1x5", "1x+5", "32769x1", "32768x32768", "1x1x1", "99999999999x1"]
+        {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_finite() {
+        assert_eq!(vector("-1, 2e3,.5"), Ok(Vec3::new(-1.0, 2000.0, 0.5)));
+        for bad in ["nan,0,0", "1,inf,0", "1e39,0,0", "1e30,0,0", "1,2", "1,2,3,4", "", "1,,2", "a,b,c"] {
+            assert!(vector(bad).is_err(), "{bad}");
+        }
+        assert_eq!(light("1,2,3"), Ok((Vec3::new(1.0, 2.0, 3.0), Vec3::ONE)));
+        assert_eq!(light("1,2,3,4,5,6").map(|l| l.1), Ok(Vec3::new(4.0, 5.0, 6.0)));
+        assert!(["1,2,3,-1,0,0", "1,2,3,nan,0,0", "1,2,3,4"].iter().all(|bad| light(bad).is_err()));
+        assert!(["0,0,0", "0,0,0,1,1,1"].iter().all(|bad| sun(bad).is_err()) && direction("0,0,0").is_err());
+        assert_eq!(intensity("0.5"), Ok(Vec3::splat(0.5)));
+        assert!(["0", "180", "-5", "nan"].iter().all(|bad| field_of_view(bad).is_err()));
+        assert!(["0", "1.5", "-5", "nan"].iter().all(|bad| fraction(bad).is_err()));
+    }
+
+    #[test]
+    fn colors() {
+        assert_eq!(color("White"), Ok([1.0; 4]));
+        assert_eq!(color("transparent"), Ok([0.0; 4]));
+        for same in ["#ff8000", "#FF8000", "255,128,0", "255, 128, 0"] {
+            assert_eq!(color(same), Ok([1.0, linear_from_srgb8(128), 0.0, 1.0]), "{same}");
+        }
+        assert_eq!(color("#f00"), color("red"));
+        for bad in ["", "#", "#ff", "#ggg", "256,0,0", "1,2", "nan,0,0", "reddish", "#ff80é"] {
+            assert!(color(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Image formats and their encoders.
+
+use super::Frame;
+use crate::error::{Error, Result};
+use image::codecs::{bmp, jpeg, openexr, png, tga, tiff};
+use image::{ExtendedColorType, ImageEncoder, ImageResult};
+use std::io::Cursor;
+use std::path::Path;
+
+/// A file format that a [`Frame`] can be written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// 8 bits, sRGB, lossless, opacity.
+    Png,
+    /// 8 bits, sRGB, lossy (quality 95), no opacity.
+    Jpeg,
+    /// 8 bits, sRGB, lossless, opacity.
+    Tga,
+    /// 8 bits, sRGB, lossless, opacity.
+    Tiff,
+    /// 8 bits, sRGB, lossless, opacity.
+    Bmp,
+    /// 32-bit float, linear, premultiplied opacity.
+    Exr,
+}
+
+impl Format {
+    /// The format of a file, by the extension of its name.
+    ///
+    /// # Errors
+    /// Names the file and the extensions that are known.
+    pub fn of(path: &Path) -> Result<Self> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        Ok(match extension.as_str() {
+            "png" => Self::Png,
+            "jpg" | "jpeg" => Self::Jpeg,
+            "tga" => Self::Tga,
+            "tif" | "tiff" => Self::Tiff,
+            "bmp" => Self::Bmp,
+            "exr" => Self::Exr,
+            _ => return Err(Error::file(path, "the name must end in .png, .jpg, .tga, .tiff, .bmp or .exr")),
+        })
+    }
+
+    #[cfg(test)]
+    pub(super) fn of_image(self) -> image::ImageFormat {
+        use image::ImageFormat;
+        [
+            (Self::Png, ImageFormat::Png),
+            (Self::Jpeg, ImageFormat::Jpeg),
+            (Self::Tga, ImageFormat::Tga),
+            (Self::Tiff, ImageFormat::Tiff),
+            (Self::Bmp, ImageFormat::Bmp),
+            (Self::Exr, ImageFormat::OpenExr),
+        ]
+        .into_iter()
+        .find_map(|(format, of_image)| (format == self).then_some(of_image))
+        .unwrap()
+    }
+}
+
+/// The bytes of `frame` as a file.
+pub(super) fn encode(frame: &Frame, format: Format) -> ImageResult<Vec<u8>> {
+    match format {
+        Format::Exr => encode_linear(frame),
+        Format::Jpeg => encode_bytes(frame, format, ExtendedColorType::Rgb8),
+        _ if frame.is_opaque() => encode_bytes(frame, format, ExtendedColorType::Rgb8),
+        _ => encode_bytes(frame, format, ExtendedColorType::Rgba8),
+    }
+}
+
+fn encode_bytes(frame: &Frame, format: Format, color: ExtendedColorType) -> ImageResult<Vec<u8>> {
+    let pixels = match color {
+        ExtendedColorType::Rgb8 => frame.to_rgb8().into_flattened(),
+        _ => frame.to_rgba8().into_flattened(),
+    };
+    let mut file = Cursor::new(Vec::new());
+    let (width, height) = (frame.width, frame.height);
+    match format {
+        Format::Jpeg => jpeg::JpegEncoder::new_with_quality(&mut file, 95).write_image(&pixels, width, height, color),
+        Format::Tga => tga::TgaEncoder::new(&mut file).write_image(&pixels, width, height, color),
+        Format::Tiff => tiff::TiffEncoder::new(&mut file).write_image(&pixels, width, height, color),
+        Format::Bmp => bmp::BmpEncoder::new(&mut file).write_image(&pixels, width, height, color),
+        Format::Png | Format::Exr => png::PngEncoder::new(&mut file).write_image(&pixels, width, height, color),
+    }?;
+    Ok(file.into_inner())
+}
+
+fn encode_linear(frame: &Frame) -> ImageResult<Vec<u8>> {
+    let (color, num_channels) =
+        if frame.is_opaque() { (ExtendedColorType::Rgb32F, 3) } else { (ExtendedColorType::Rgba32F, 4) };
+    let pixels: Vec<u8> =
+        frame.pixels.iter().flat_map(|pixel| &pixel[..num_channels]).flat_map(|c| c.to_ne_bytes()).collect();
+    let mut file = Cursor::new(Vec::new());
+    openexr::OpenExrEncoder::new(&mut file).write_image(&pixels, frame.width, frame.height, color)?;
+    Ok(file.into_inner())
+}

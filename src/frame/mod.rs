@@ -1,0 +1,123 @@
+//! The finished picture: linear pixels, their 8-bit sRGB encoding, and files of it.
+//!
+//! A file is encoded in memory, written under a temporary name in its own folder, flushed to the disk and renamed:
+//! whoever looks finds the whole old file or the whole new one ([`write_whole`]).
+
+mod format;
+mod save;
+
+pub use format::Format;
+pub use save::{check_writable, write_whole};
+
+use crate::error::{Error, Result};
+use crate::texture::srgb8_from_linear;
+use rayon::prelude::*;
+use std::path::Path;
+
+/// A picture in linear light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Pixels a row.
+    pub width: u32,
+    /// Rows; row 0 is the top.
+    pub height: u32,
+    /// Linear RGB, premultiplied by the fourth component, the opacity.
+    pub pixels: Vec<[f32; 4]>,
+}
+
+impl Frame {
+    /// A frame of one colour: linear RGB, premultiplied by the fourth component, the opacity.
+    #[must_use]
+    pub fn filled(width: u32, height: u32, color: [f32; 4]) -> Self {
+        Self { width, height, pixels: vec![color; width as usize * height as usize] }
+    }
+
+    /// Whether no pixel lets anything through.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        self.pixels.iter().all(|pixel| pixel[3] >= 1.0)
+    }
+
+    /// 8-bit sRGB with straight opacity, row by row from the top.
+    #[must_use]
+    pub fn to_rgba8(&self) -> Vec<[u8; 4]> {
+        self.pixels.par_iter().map(|&pixel| rgba8(pixel)).collect()
+    }
+
+    /// 8-bit sRGB over black, row by row from the top.
+    #[must_use]
+    pub fn to_rgb8(&self) -> Vec<[u8; 3]> {
+        self.pixels.par_iter().map(|&[r, g, b, _]| [r, g, b].map(srgb8_from_linear)).collect()
+    }
+
+    /// The bytes of an image file.
+    ///
+    /// Formats of 8 bits hold sRGB: RGB where the frame is opaque everywhere, else RGBA with straight opacity; JPEG
+    /// knows no opacity and holds the frame over black. EXR holds the linear pixels as they are.
+    ///
+    /// # Errors
+    /// Says why when the format cannot hold the frame.
+    pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
+        if self.pixels.len() as u64 != u64::from(self.width) * u64::from(self.height) || self.pixels.is_empty() {
+            return Err(Error::scene("frame", "the number of pixels must be width times height and above 0"));
+        }
+        format::encode(self, format).map_err(|e| Error::scene("frame", e))
+    }
+
+    /// Writes an image file in the format of its extension: png, jpg, jpeg, tga, tif, tiff, bmp or exr.
+    ///
+    /// # Errors
+    /// Names the file when its extension is unknown or it cannot be written; an older file is then left as it was.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        write_whole(path, &self.encode(Format::of(path)?)?)
+    }
+}
+
+fn rgba8([r, g, b, opacity]: [f32; 4]) -> [u8; 4] {
+    if opacity > 0.0 {
+        let opacity = opacity.min(1.0);
+        let [r, g, b] = [r, g, b].map(|c| srgb8_from_linear(c / opacity));
+        [r, g, b, (opacity * 255.0 + 0.5) as u8]
+    } else {
+        [0; 4]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opacity_is_straight_in_bytes() {
+        assert_eq!(rgba8([0.25, 0.0, 0.5, 0.5]), [188, 0, 255, 128]);
+        assert_eq!(rgba8([0.0; 4]), [0; 4]);
+        assert_eq!(rgba8([f32::NAN, 2.0, -1.0, 1.0]), [0, 255, 0, 255]);
+        assert_eq!(rgba8([1.0, 1.0, 1.0, f32::NAN]), [0; 4]);
+    }
+
+    #[test]
+    fn each_format_holds_the_frame() {
+        let mut frame = Frame::filled(3, 2, [0.2, 0.4, 0.6, 1.0]);
+        for opacity in [1.0, 0.5] {
+            frame.pixels[4] = [0.1, 0.2, 0.3, opacity];
+            for format in [Format::Png, Format::Tga, Format::Tiff, Format::Bmp] {
+                let read = image::load_from_memory_with_format(&frame.encode(format).unwrap(), format.of_image());
+                let expected: Vec<u8> = frame.to_rgba8().into_iter().flatten().collect();
+                assert_eq!(read.unwrap().to_rgba8().into_raw(), expected, "{format:?} {opacity}");
+            }
+        }
+        let read = image::load_from_memory(&frame.encode(Format::Exr).unwrap()).unwrap().into_rgba32f();
+        assert_eq!(read.into_raw(), frame.pixels.concat());
+        let read = image::load_from_memory(&frame.encode(Format::Jpeg).unwrap()).unwrap().into_rgb8();
+        assert!(read.get_pixel(0, 0).0.iter().zip(frame.to_rgb8()[0]).all(|(&a, b)| a.abs_diff(b) < 12));
+    }
+
+    #[test]
+    fn wrong_number_of_pixels_is_refused() {
+        let mut frame = Frame::filled(3, 2, [0.0; 4]);
+        frame.pixels.pop();
+        assert!(frame.encode(Format::Png).is_err());
+        assert!(Frame::filled(0, 0, [0.0; 4]).encode(Format::Png).is_err());
+    }
+}

@@ -1,0 +1,145 @@
+//! Files that are there as a whole or not at all.
+
+use crate::error::{Error, Result};
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// Writes `bytes` to the file `path`, replacing what was there in one step: at any moment, even if the process is
+/// killed or the disk fills up, the file is the whole old or the whole new one.
+///
+/// A link is followed; the permissions of an older file are kept. Devices and pipes are written to directly.
+///
+/// # Errors
+/// Names the file when it cannot be written; an older file is then left as it was.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    match Place::of(path)? {
+        Place::Stream => OpenOptions::new().write(true).open(path).and_then(|mut stream| stream.write_all(bytes)),
+        Place::File { target, permissions } => temporary_beside(&target).and_then(|mut file| {
+            file.write_all(bytes)?;
+            permissions.map_or(Ok(()), |permissions| fs::set_permissions(file.path(), permissions))?;
+            file.as_file().sync_all()?;
+            file.persist(&target)?;
+            flush_folder(&target)
+        }),
+    }
+    .map_err(|e| Error::file(path, format!("cannot be written: {e}")))
+}
+
+/// Checks, before the work, that [`write_whole`] could write the file `path`: its folder exists and takes files.
+///
+/// # Errors
+/// Names the file and what is in the way.
+pub fn check_writable(path: &Path) -> Result<()> {
+    match Place::of(path)? {
+        Place::Stream => Ok(()),
+        Place::File { target, .. } => {
+            temporary_beside(&target).map(drop).map_err(|e| Error::file(path, format!("cannot be written: {e}")))
+        }
+    }
+}
+
+/// Where bytes for a path end up.
+enum Place {
+    /// A file that is there (links followed), with its permissions, or one to be made.
+    File { target: PathBuf, permissions: Option<Permissions> },
+    /// A device or pipe.
+    Stream,
+}
+
+impl Place {
+    fn of(path: &Path) -> Result<Self> {
+        let refuse = |reason: &str| Err(Error::file(path, reason));
+        if path.file_name().is_none() {
+            return refuse("names no file");
+        }
+        if !folder(path).is_dir() {
+            return refuse("its folder does not exist");
+        }
+        match fs::metadata(path) {
+            Ok(found) if found.is_dir() => refuse("is a folder"),
+            Ok(found) if !found.is_file() => Ok(Self::Stream),
+            Ok(found) if found.permissions().readonly() => refuse("is write-protected"),
+            Ok(found) => {
+                let target = fs::canonicalize(path).map_err(|e| Error::file(path, e))?;
+                Ok(Self::File { target, permissions: Some(found.permissions()) })
+            }
+            Err(_) if path.is_symlink() => refuse("is a link to a file that cannot be found"),
+            Err(_) => Ok(Self::File { target: path.into(), permissions: None }),
+        }
+    }
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+fn temporary_beside(target: &Path) -> std::io::Result<NamedTempFile> {
+    let mut name = tempfile::Builder::new();
+    name.prefix(".basrelief-").suffix(".tmp");
+    // The crate's own choice, readable by the owner alone, is for secrets; the user's mask shall decide.
+    #[cfg(unix)]
+    name.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    // Its message names the temporary file, of which the user knows nothing: keep the kind only.
+    name.tempfile_in(folder(target)).map_err(|e| e.kind().into())
+}
+
+/// Makes the new name last through a power failure, where folders can be flushed.
+fn flush_folder(target: &Path) -> std::io::Result<()> {
+    if cfg!(unix) { File::open(folder(target))?.sync_all() } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn file_is_replaced_and_nothing_else_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        for bytes in [&b"old"[..], b"new and longer"] {
+            check_writable(&path).unwrap();
+            write_whole(&path, bytes).unwrap();
+            assert_eq!(fs::read(&path).unwrap(), bytes);
+            assert_eq!(names(folder.path()), ["a.png"]);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_a_file_is_refused_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("missing/a.png");
+        for (path, reason) in [(missing.as_path(), "folder does not exist"), (folder.path(), "is a folder")] {
+            let text = check_writable(path).unwrap_err().to_string();
+            assert!(text.contains(reason) && text.contains(&path.display().to_string()), "{text}");
+            assert_eq!(write_whole(path, b"x").unwrap_err().to_string(), text);
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_permissions_kept() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link] = ["file", "link"].map(|name| folder.path().join(name));
+        fs::write(&file, "old").unwrap();
+        fs::set_permissions(&file, Permissions::from_mode(0o640)).unwrap();
+        symlink(&file, &link).unwrap();
+        write_whole(&link, b"new").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+        assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn full_disk_is_an_error() {
+        let text = write_whole(Path::new("/dev/full"), b"x").unwrap_err().to_string();
+        assert!(text.starts_with("/dev/full: cannot be written"), "{text}");
+    }
+}
