@@ -64,7 +64,7 @@ fn raster(criterion: &mut Criterion) {
         let geometry = project(&scene, &settings);
         let mut bins = Bins::default();
         group.bench_function(format!("binning/{name}"), |b| {
-            b.iter(|| bins.fill(black_box(&geometry), &TileGrid::new(&settings)))
+            b.iter(|| bins.fill(black_box(&geometry), &TileGrid::new(&settings)));
         });
         group.bench_function(format!("coverage/{name}"), |b| b.iter(|| hit_counts(black_box(&geometry), &settings)));
         let mut rasterizer = Rasterizer::default();

@@ -173,7 +173,7 @@ fn a_floor_whose_corners_lie_behind_the_eye_fills_below_the_horizon() {
     }
 }
 
-/// A small generator, so that the cases are the same everywhere (Steele and others 2014, SplitMix64).
+/// A small generator, so that the cases are the same everywhere (Steele and others 2014, `SplitMix64`).
 struct Random(u64);
 
 impl Random {

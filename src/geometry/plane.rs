@@ -34,9 +34,9 @@ impl ScreenBasis {
         let [c0, c1, _] = basis.plane_f64([1.0; 3]);
         let slope = c0.abs() + c1.abs();
         let (near, far) = (p0[2].min(p1[2]).min(p2[2]), p0[2].max(p1[2]).max(p2[2]));
-        // Negated, so that it holds for NaN too.
-        let is_edge_on = !(slope <= f64::from(f32::MAX)) || (near > 0.0 && slope * near > EDGE_ON);
-        if is_edge_on { Self::constant(view, far, center) } else { basis }
+        let is_bounded = slope <= f64::from(f32::MAX);
+        let is_edge_on = near > 0.0 && slope * near > EDGE_ON;
+        if is_edge_on || !is_bounded { Self::constant(view, far, center) } else { basis }
     }
 
     #[cold]

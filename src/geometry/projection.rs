@@ -97,7 +97,7 @@ impl Projection {
     pub fn snap(&self, [x, y, w]: [f64; 3]) -> [i32; 2] {
         let scale = f64::from(1_u32 << SUBPIXEL_BITS);
         let snap = |value: f64, center: f64| {
-            let screen = (value / w).max(-GUARD).min(GUARD) + center;
+            let screen = (value / w).clamp(-GUARD, GUARD) + center;
             (screen * scale).round_ties_even() as i32
         };
         [snap(x, self.center[0]), snap(y, self.center[1])]

@@ -1,8 +1,9 @@
 //! The attribute planes of a triangle, made when it turns out to be visible.
 //!
 //! The ray to a corner, in the corner's texture frame, solves `ray = alpha U + beta V - gamma s N` with `U = dP/du`,
-//! `V = dP/dv`, `s = sqrt(|U x V|)`: the inverse of the columns `U, V, C = -s N` has the rows `V x C`, `C x U`, `U x V` over
-//! `det = U . (V x C)`. With a frame at each corner, curved surfaces stay smooth.
+//! `V = dP/dv`, `s = sqrt(|U x V|)`. By Cramer's rule, with `volume = N . (U x V)`, `alpha = (V x N) . ray / volume`,
+//! `beta = (N x U) . ray / volume`, `gamma = -(U x V) . ray / (s volume)`. With a frame at each corner, curved surfaces
+//! stay smooth.
 
 use super::quad::{AttributePlanes, LitPlanes, Plane};
 use crate::geometry::{Geometry, ScreenBasis, ScreenTriangle};
@@ -63,13 +64,14 @@ impl LitPlanes {
 /// `(alpha, beta, gamma)` of a ray in the texture frame of a vertex.
 fn view_in_texture_frame(ray: DVec3, mesh: &Mesh, vertex: usize) -> DVec3 {
     let [u, v] = mesh.tangents[vertex].map(|tangent| tangent.as_dvec3());
-    let scale = u.cross(v).length().sqrt();
-    let c = mesh.normals[vertex].as_dvec3() * -scale;
-    let rows = [v.cross(c), c.cross(u), u.cross(v)];
-    let det = u.dot(rows[0]);
-    let size = u.length() * v.length() * c.length();
-    if det.abs() > FLAT * size && det.is_normal() {
-        DVec3::new(rows[0].dot(ray), rows[1].dot(ray), rows[2].dot(ray)) / det
+    let n = mesh.normals[vertex].as_dvec3();
+    let across = u.cross(v);
+    let volume = n.dot(across);
+    let size_squared = u.length_squared() * v.length_squared() * n.length_squared();
+    if volume * volume > FLAT * FLAT * size_squared && volume.is_normal() {
+        let s = across.length().sqrt();
+        let scale = 1.0 / (volume * s);
+        DVec3::new(v.cross(n).dot(ray) * s, n.cross(u).dot(ray) * s, -across.dot(ray)) * scale
     } else {
         STRAIGHT
     }

@@ -7,14 +7,15 @@ use super::bin::{Bins, TileGrid};
 use super::edge::Rect;
 use super::gather::{SeenQuad, gather};
 use super::quad::{AttributePlanes, QuadPair};
-use super::tile::{NONE, VisibilityBuffer};
+use super::scratch::{Borrowed, Scratch};
+use super::tile::NONE;
 use crate::frame::Frame;
 use crate::geometry::Geometry;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::simd::PixelLanes;
 use rayon::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 /// Linear RGB, premultiplied by the fourth component, the opacity.
 type Pixel = [f32; 4];
@@ -93,45 +94,6 @@ fn rows_by_tile<'a>(frame: &'a mut Frame, grid: &TileGrid) -> Vec<&'a mut [Pixel
     slices
 }
 
-/// Buffers for one tile.
-#[derive(Debug, Default)]
-struct Scratch {
-    /// The tile's triangles; places in it are local indices.
-    list: Vec<u32>,
-    visibility: VisibilityBuffer,
-    quads: Vec<SeenQuad>,
-    /// Slot in `planes` of each local index, or [`NONE`].
-    slots: Vec<u32>,
-    /// The triangles seen, in the order in which quads found them.
-    planes: Vec<AttributePlanes>,
-    /// Material of each slot.
-    materials: Vec<u32>,
-    /// Order of `quads`: material in the upper half, place in the lower.
-    order: Vec<u64>,
-}
-
-/// A [`Scratch`] on loan from the pool.
-struct Borrowed<'a> {
-    pool: &'a Mutex<Vec<Scratch>>,
-    scratch: Option<Scratch>,
-}
-
-impl<'a> Borrowed<'a> {
-    fn new(pool: &'a Mutex<Vec<Scratch>>) -> Self {
-        Self { pool, scratch: pool.lock().unwrap_or_else(PoisonError::into_inner).pop() }
-    }
-
-    fn get(&mut self) -> &mut Scratch {
-        self.scratch.get_or_insert_default()
-    }
-}
-
-impl Drop for Borrowed<'_> {
-    fn drop(&mut self) {
-        self.pool.lock().unwrap_or_else(PoisonError::into_inner).extend(self.scratch.take());
-    }
-}
-
 /// What all tiles share.
 struct Painter<'a> {
     geometry: &'a Geometry,
@@ -154,13 +116,16 @@ impl Painter<'_> {
         scratch.list.clear();
         self.bins.list(tile, &mut scratch.list);
         rows.iter_mut().for_each(|row| row.fill(Pixel::default()));
-        let mut num_shaded = 0;
-        if !scratch.list.is_empty() {
-            self.see(&rect, scratch);
-            self.find_planes(scratch);
-            num_shaded = self.shade_quads(&rect, rows, scratch, shade);
+        if scratch.list.is_empty() {
+            self.add_background(rows);
+            return 0;
         }
-        self.add_background(rows);
+        self.see(&rect, scratch);
+        self.find_planes(scratch);
+        let num_shaded = self.shade_quads(&rect, rows, scratch, shade);
+        if !self.is_full(&rect, &scratch.quads) {
+            self.add_background(rows);
+        }
         num_shaded
     }
 
@@ -235,6 +200,13 @@ impl Painter<'_> {
         num_shaded
     }
 
+    /// Whether every sample of the tile sees a triangle.
+    fn is_full(&self, rect: &Rect, quads: &[SeenQuad]) -> bool {
+        let num_seen: u64 = quads.iter().flat_map(|quad| quad.coverage).map(u64::from).sum();
+        let [width, height] = [0, 1].map(|i| (rect.max[i] - rect.min[i]) as u64);
+        num_seen == width * height * u64::from(self.settings.msaa)
+    }
+
     fn add_background(&self, rows: &mut [&mut [Pixel]]) {
         let [r, g, b, a] = self.scene.background;
         let background = [r * a, g * a, b * a, a];
@@ -257,17 +229,21 @@ fn add(
     share: f32,
     colors: [PixelLanes; 3],
 ) -> u64 {
-    let [r, g, b] = colors.map(PixelLanes::to_array);
+    let shares = PixelLanes::new(coverage.map(|count| f32::from(count) * share));
+    let [r, g, b] = colors.map(|color| (color * shares).to_array());
+    let shares = shares.to_array();
     let mut num = 0;
-    for (lane, &count) in coverage.iter().enumerate().filter(|&(_, &count)| count > 0) {
-        let [x, y] = places[lane / 4];
-        let pixel = &mut rows[y as usize + (lane >> 1 & 1)][x as usize + (lane & 1)];
-        let share = f32::from(count) * share;
-        pixel[0] += r[lane] * share;
-        pixel[1] += g[lane] * share;
-        pixel[2] += b[lane] * share;
-        pixel[3] += share;
-        num += 1;
+    for half in 0..4 {
+        let [x, y] = places[half / 2].map(usize::from);
+        // Below the frame's last row there may be none, or an empty one.
+        let Some(row) = rows.get_mut(y + half % 2).and_then(|row| row.get_mut(x..)) else { continue };
+        for (lane, pixel) in (half * 2..half * 2 + 2).zip(row) {
+            if coverage[lane] > 0 {
+                let color = [r[lane], g[lane], b[lane], shares[lane]];
+                (0..4).for_each(|i| pixel[i] += color[i]);
+                num += 1;
+            }
+        }
     }
     num
 }

@@ -14,6 +14,7 @@ mod draw;
 mod edge;
 mod gather;
 mod quad;
+mod scratch;
 mod tile;
 
 pub use bin::{Bins, TileGrid, hit_counts};
