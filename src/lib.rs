@@ -9,11 +9,11 @@ pub mod texture;
 mod error;
 // The stages are public to the crate's own tests, benches and fuzz targets, and no part of the interface.
 #[doc(hidden)]
+pub mod filter;
+#[doc(hidden)]
 pub mod geometry;
 #[doc(hidden)]
 pub mod raster;
-#[doc(hidden)]
-pub mod filter;
 #[doc(hidden)]
 pub mod relief;
 mod render;

@@ -58,9 +58,9 @@ impl LocalLights {
     /// What an albedo of 1 is multiplied with under a unit normal.
     #[must_use]
     pub fn diffuse(&self, normal: Vec3) -> Vec3 {
-        self.lights.iter().fold(self.ambient, |sum, (to_light, intensity)| {
-            sum + *intensity * normal.dot(*to_light).max(0.0)
-        })
+        self.lights
+            .iter()
+            .fold(self.ambient, |sum, (to_light, intensity)| sum + *intensity * normal.dot(*to_light).max(0.0))
     }
 
     /// The highlights of a mean normal.

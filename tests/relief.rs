@@ -46,7 +46,8 @@ fn check(surface: &Surface, seed: u64, longest: f32) {
             let found = f64::from(depth[lane]);
             let error = (found - expected).abs() * f64::from(texels);
             // Where the ray grazes the relief, rounding decides whether it is hit there or further on.
-            let [u, v] = [0, 1].map(|i| (f64::from(b[i]) + f64::from(r[i]) * found) * f64::from(field.texels_per_repeat[i]));
+            let [u, v] =
+                [0, 1].map(|i| (f64::from(b[i]) + f64::from(r[i]) * found) * f64::from(field.texels_per_repeat[i]));
             let grazes = found < expected && (1.0 - found - field.height_at(u, v)).abs() < 1e-4;
             num_grazing += usize::from(error >= 0.05 && grazes);
             assert!(error < 0.05 || grazes, "{error} texels off: {} for {expected}, from {b:?} by {r:?}", depth[lane]);

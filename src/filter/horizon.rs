@@ -133,7 +133,13 @@ impl<'a> Sweep<'a> {
     }
 
     /// Sweeps eight lines, the first at `xi`.
-    fn lines<const NARROW: bool>(&self, first: f32, spacing: f32, lights: Option<&LocalLights>, total: &mut Totals) -> u64 {
+    fn lines<const NARROW: bool>(
+        &self,
+        first: f32,
+        spacing: f32,
+        lights: Option<&LocalLights>,
+        total: &mut Totals,
+    ) -> u64 {
         let index = TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         let xi = index * spacing + first;
         let outside = xi * xi * self.across;

@@ -79,7 +79,6 @@ pub fn ellipse_mean(
     (mean.unwrap_or_else(|| isotropic::bilinear(surface, index, footprint.center)), [num_tested, num_visible])
 }
 
-
 /// Eight packed normals.
 pub(crate) fn unpack_normals(words: u32x8) -> [TexelLanes; 3] {
     let number = |bits: u32x8| TexelLanes::from_i32x8(crate::simd::as_signed(bits));

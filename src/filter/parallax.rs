@@ -59,7 +59,11 @@ fn height(surface: &Surface, place: [f32; 2], size: f32) -> f32 {
     let (level, blend) = isotropic::level_of_size(size);
     let last = surface.levels.len() - 1;
     let fine = bilinear_height(surface, level.min(last), place);
-    if blend == 0.0 || level >= last { fine } else { fine + (bilinear_height(surface, level + 1, place) - fine) * blend }
+    if blend == 0.0 || level >= last {
+        fine
+    } else {
+        fine + (bilinear_height(surface, level + 1, place) - fine) * blend
+    }
 }
 
 fn bilinear_height(surface: &Surface, level: usize, place: [f32; 2]) -> f32 {

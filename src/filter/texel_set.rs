@@ -82,7 +82,9 @@ impl TexelSet {
     pub fn iter(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
         self.rows.iter().flat_map(move |row| {
             let [first, num] = row.batches;
-            (0..8 * num).filter(move |i| self.bits[first + i / 8] >> (i % 8) & 1 == 1).map(|i| [row.x + i as i32, row.y])
+            (0..8 * num)
+                .filter(move |i| self.bits[first + i / 8] >> (i % 8) & 1 == 1)
+                .map(|i| [row.x + i as i32, row.y])
         })
     }
 }

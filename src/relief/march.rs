@@ -26,15 +26,18 @@ pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelL
     let start = |b: PixelLanes, n: f32, size: i32| {
         let patterns = finite(b * (n / size as f32));
         let whole = if field.is_clamped { PixelLanes::ZERO } else { patterns.floor() };
-        (patterns - whole).fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST)) * size as f32 - 0.5
+        (patterns - whole).fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST)) * size as f32
+            - 0.5
     };
-    let bounded = |d: PixelLanes| finite(d).fast_max(PixelLanes::splat(-MAX_SLOPE)).fast_min(PixelLanes::splat(MAX_SLOPE));
+    let bounded =
+        |d: PixelLanes| finite(d).fast_max(PixelLanes::splat(-MAX_SLOPE)).fast_min(PixelLanes::splat(MAX_SLOPE));
     let step = [bounded(displacement[0]) * nu, bounded(displacement[1]) * nv];
     let level = field.first_level(longest(&step));
     let mut rays = Rays {
         start: [start(base[0], nu, field.size[0]), start(base[1], nv, field.size[1])],
         step,
-        inverse: step.map(|s| PixelLanes::ONE / s.abs().simd_gt(PixelLanes::splat(1e-9)).select(s, PixelLanes::splat(1e-9))),
+        inverse: step
+            .map(|s| PixelLanes::ONE / s.abs().simd_gt(PixelLanes::splat(1e-9)).select(s, PixelLanes::splat(1e-9))),
         depth: PixelLanes::ZERO,
         level: i32x8::splat(level),
         parent: [i32x8::splat(i32::MIN); 2],
@@ -133,7 +136,8 @@ impl Rays {
     /// The greatest height in each ray's node, 0 to 1; 1 for a cell.
     fn node_heights(&self, field: &HeightField, folded: &[i32x8; 2]) -> PixelLanes {
         let (levels, x, y) = (self.level.to_array(), folded[0].to_array(), folded[1].to_array());
-        let height = |lane: usize| if levels[lane] == 0 { 65535.0 } else { field.node_max(levels[lane], x[lane], y[lane]) };
+        let height =
+            |lane: usize| if levels[lane] == 0 { 65535.0 } else { field.node_max(levels[lane], x[lane], y[lane]) };
         PixelLanes::new(std::array::from_fn(height)) * (1.0 / 65535.0)
     }
 

@@ -161,9 +161,8 @@ fn height_fields(scene: &Scene) -> Vec<Option<Arc<HeightField>>> {
         field
     };
     let mut field_of = field_of;
-    let with_relief = |material: &crate::Material| {
-        material.surface.as_ref().filter(|surface| surface.relief_depth > 0.0).cloned()
-    };
+    let with_relief =
+        |material: &crate::Material| material.surface.as_ref().filter(|surface| surface.relief_depth > 0.0).cloned();
     scene.materials.iter().map(|material| with_relief(material).map(|surface| field_of(&surface))).collect()
 }
 

@@ -200,7 +200,8 @@ impl<'a> QuadShader<'a> {
         let w = 1.0 / (a * x + b * y + c);
         let at = |planes: &[crate::raster::Plane; 3]| Vec3::from(planes.map(|[a, b, c]| (a * x + b * y + c) * w));
         let LitPlanes { position, normal, tangent_u, tangent_v } = lit;
-        let point = SurfacePoint { position: at(position), normal: at(normal), tangents: [at(tangent_u), at(tangent_v)] };
+        let point =
+            SurfacePoint { position: at(position), normal: at(normal), tangents: [at(tangent_u), at(tangent_v)] };
         Some(LocalLights::at(&point, self.scene.camera.eye, &self.scene.lights, self.scene.ambient))
     }
 }

@@ -13,5 +13,5 @@ mod surface;
 pub use color::{linear_from_srgb, linear_from_srgb8, srgb_from_linear, srgb8_from_linear};
 pub use image::{ColorImage, HeightImage, NormalImage};
 pub use level::Level;
-pub use surface::{Surface, SurfaceMaps, Wrap};
 pub(crate) use level::unpack_normal;
+pub use surface::{Surface, SurfaceMaps, Wrap};

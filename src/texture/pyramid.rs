@@ -8,7 +8,12 @@ use super::level::{Level, PackedTexel, pack_normal, unpack_normal, wrap_index};
 use rayon::prelude::*;
 
 /// All levels, and all levels transposed.
-pub(super) fn build(texels: Vec<PackedTexel>, size: [usize; 2], wrap: Wrap, num_planes: usize) -> (Vec<Level>, Vec<Level>) {
+pub(super) fn build(
+    texels: Vec<PackedTexel>,
+    size: [usize; 2],
+    wrap: Wrap,
+    num_planes: usize,
+) -> (Vec<Level>, Vec<Level>) {
     let (mut levels, mut transposed) = (Vec::new(), Vec::new());
     let (mut texels, mut size) = (texels, size);
     loop {

@@ -50,7 +50,11 @@ fn taps(wrap: Wrap, i: usize, num_to: usize, num_from: usize) -> Taps {
     let floor = place.floor();
     let fold = |i: i32| {
         let n = num_from as i32;
-        if wrap == Wrap::Mirror { (if i < 0 { -1 - i } else { i }).min(2 * n - 1 - i).max(0) as usize } else { wrap_index(wrap, i, num_from) }
+        if wrap == Wrap::Mirror {
+            (if i < 0 { -1 - i } else { i }).min(2 * n - 1 - i).max(0) as usize
+        } else {
+            wrap_index(wrap, i, num_from)
+        }
     };
     Taps { near: fold(floor as i32), far: fold(floor as i32 + 1), towards_far: (place - floor) as f32 }
 }
@@ -71,10 +75,13 @@ pub(super) fn fill<T: Texels>(
             let lerp = |a: u32, b: u32, t: f32| a as f32 + (b as f32 - a as f32) * t;
             let [a, b] = [u.near, u.far].map(|x| from.texel(v.near * w + x));
             let [c, d] = [u.near, u.far].map(|x| from.texel(v.far * w + x));
-            write(texel, std::array::from_fn(|i| {
-                let (low, high) = (lerp(a[i], b[i], u.towards_far), lerp(c[i], d[i], u.towards_far));
-                (low + (high - low) * v.towards_far + 0.5) as u32
-            }));
+            write(
+                texel,
+                std::array::from_fn(|i| {
+                    let (low, high) = (lerp(a[i], b[i], u.towards_far), lerp(c[i], d[i], u.towards_far));
+                    (low + (high - low) * v.towards_far + 0.5) as u32
+                }),
+            );
         }
     });
 }

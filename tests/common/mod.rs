@@ -26,7 +26,8 @@ pub fn rough_surface(width: u32, height: u32, wrap: Wrap, seed: u64) -> Surface 
     let mut random = Random(seed);
     let albedo = ColorImage::from_fn(width, height, |_, _| [0; 3].map(|_| random.within(0.0, 1.0)));
     let heights = HeightImage::from_fn(width, height, |_, _| random.within(0.0, 1.0));
-    let maps = SurfaceMaps { albedo: Some(albedo), height: Some(heights), wrap, relief_depth: 0.1, ..Default::default() };
+    let maps =
+        SurfaceMaps { albedo: Some(albedo), height: Some(heights), wrap, relief_depth: 0.1, ..Default::default() };
     Surface::new(maps).expect("valid maps")
 }
 
