@@ -27,7 +27,7 @@ const MAX_TEXELS: f32 = (1 << 20) as f32;
 /// What a filter returns: means of the stored texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Filtered {
-    /// Linear RGB as stored: 65535 stands for the surface's `color_scale`.
+    /// Linear RGB as stored: [`FULL`](crate::texture::FULL) stands for the surface's `color_scale`.
     pub color: [f32; 3],
     /// Mean normal in the texture frame; shorter than one where normals differ.
     pub normal: [f32; 3],

@@ -7,7 +7,7 @@ use crate::scene::{Material, Scene};
 use crate::settings::{Derivatives, Filter, Formulas, Lighting, Settings};
 use crate::shade::{LocalLights, SurfacePoint};
 use crate::simd::PixelLanes;
-use crate::texture::Surface;
+use crate::texture::{FULL_F32, Surface};
 use glam::Vec3;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -207,7 +207,7 @@ impl<'a> QuadShader<'a> {
 }
 
 fn albedo(ground: &Ground, texel: &Filtered) -> Vec3 {
-    Vec3::from(texel.color) * ground.material.diffuse * (ground.surface.color_scale / 65535.0)
+    Vec3::from(texel.color) * ground.material.diffuse * (ground.surface.color_scale / FULL_F32)
 }
 
 fn each_covered(pair: &QuadPair, mut color: impl FnMut(usize) -> Vec3) -> [Vec3; 8] {
