@@ -5,6 +5,7 @@
 
 mod ellipse;
 pub mod ewa;
+mod far_field;
 mod footprint;
 pub mod horizon;
 pub mod isotropic;
@@ -14,6 +15,7 @@ pub mod truth;
 pub mod visible;
 
 pub use ellipse::{Ellipse, RECONSTRUCTION};
+pub use far_field::FarField;
 pub use footprint::{Corner, Differences, Footprint, at_pixel, differences};
 pub use texel_set::{TexelRow, TexelSet};
 

@@ -55,6 +55,7 @@ impl Level {
     }
 
     /// The words of a row of the endless pattern, all planes.
+    #[inline(always)]
     pub(crate) fn row(&self, y: i32) -> &[u32] {
         let pitch = (self.width + 2 * APRON) * self.num_planes;
         let start = wrap_index(self.wrap, y, self.height) * pitch;
@@ -62,6 +63,7 @@ impl Level {
     }
 
     /// Where a run of up to [`APRON`] texels that begins at column `x` of the endless pattern starts within a plane.
+    #[inline(always)]
     pub(crate) fn run_start(&self, x: i32) -> usize {
         match self.wrap {
             Wrap::Clamp => (x.clamp(-(APRON as i32), self.width as i32) + APRON as i32) as usize,
@@ -75,6 +77,7 @@ impl Level {
     }
 
     /// Eight neighbouring words of a row, from `start`: [`Self::run_start`] plus a multiple of [`Self::stride`].
+    #[inline(always)]
     pub(crate) fn run(row: &[u32], start: usize) -> u32x8 {
         let lanes: &[u32; 8] = row[start..start + 8].try_into().expect("a slice of eight");
         u32x8::new(*lanes)
@@ -98,6 +101,7 @@ impl Level {
 }
 
 /// The stored index of place `i` of an endless row of period `n`. A mirrored pattern is stored whole, so it repeats.
+#[inline(always)]
 pub(crate) fn wrap_index(wrap: Wrap, i: i32, n: usize) -> usize {
     let n = n as i32;
     match wrap {

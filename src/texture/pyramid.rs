@@ -42,7 +42,7 @@ fn transpose(texels: &[PackedTexel], [width, height]: [usize; 2]) -> Vec<PackedT
 }
 
 /// Source places and weights (sum 1) of one destination texel along one axis.
-fn box_taps(i: usize, num_from: usize, num_to: usize) -> Vec<(usize, f32)> {
+pub(crate) fn box_taps(i: usize, num_from: usize, num_to: usize) -> Vec<(usize, f32)> {
     let ratio = num_from as f64 / num_to as f64;
     let (start, end) = (i as f64 * ratio, (i + 1) as f64 * ratio);
     (start as usize..(end.ceil() as usize).min(num_from))
