@@ -143,7 +143,7 @@ fn what_exporters_write_besides_is_put_up_with() {
 
 #[test]
 fn the_camera_frames_a_small_scene_far_from_the_origin() {
-    let obj = "v 1000000 0 0\nv 1000000 0.0001 0\nv 1000000 0 0.0001\nf 1 2 3\n";
+    let obj = "v 1e6 1e6 1e6\nv 1e6 1e6 1e6\nv 1e6 1e6 1000000.1\nf 1 2 3\n";
     Files::new(obj, "").load().scene.validate().expect("a camera that sees something");
 }
 
