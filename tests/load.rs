@@ -410,7 +410,7 @@ fn broken_lines_are_refused_with_their_number() {
     assert_eq!(Files::quad("Ns shiny").refusal(), "s.mtl:2: Ns: 'shiny' is not a finite number");
     assert_eq!(Files::quad("disp -bm x.png y.png").refusal(), "s.mtl:2: option -bm needs 1 number(s)");
     assert_eq!(Files::new(QUAD, "Kd 1 1 1\n").refusal(), "s.mtl:1: Kd stands before the first newmtl");
-    assert!(has(&Files::quad("Kd 0.5\nmap_Kd").load().warnings, "s.mtl:3: map_Kd names no file"));
+    assert!(has(&Files::quad("Kd 0.5\nmap_Kd").load().warnings, "s.mtl:3: map_Kd names no file or value"));
 }
 
 #[test]
@@ -503,7 +503,8 @@ fn links_out_of_the_folder_devices_and_pipes_are_refused() {
 
 #[test]
 fn the_fuzzers_corpora_load_or_are_refused_in_one_line() {
-    let corpora: [(&str, fn(&[u8]) -> Result<(), Error>); 3] = [
+    type Run = fn(&[u8]) -> Result<(), Error>;
+    let corpora: [(&str, Run); 3] = [
         ("load_obj", |bytes| load_obj_bytes(bytes, &LoadOptions::default())?.scene.validate()),
         ("load_mtl", |bytes| load_mtl_bytes(bytes).map(drop)),
         ("load_image", load_image_bytes),

@@ -3,9 +3,10 @@
 //! Input: a [`Plan`] for every material. Every image file is decoded once, in parallel, and every different plan becomes
 //! one [`Surface`]. What all of that needs is estimated from the heads of the files before any is decoded.
 
-use super::decode::{self, ImageInfo, ImageLimits, Samples};
+use super::decode::{self, ImageInfo, ImageLimits};
 use super::load::LoadOptions;
 use super::plan::{Kind, Map, Plan};
+use super::samples::Samples;
 use crate::error::{Error, Result};
 use crate::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps};
 use rayon::prelude::*;
