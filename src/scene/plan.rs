@@ -35,6 +35,13 @@ pub(super) enum Kind {
     Normal { strength: u32, is_green_down: bool },
 }
 
+impl Kind {
+    /// Bytes of a texel once it is read.
+    pub(super) fn num_bytes(&self) -> u64 {
+        if matches!(self, Self::Height { .. }) { 2 } else { 6 }
+    }
+}
+
 /// What one surface is made from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Plan {
@@ -54,6 +61,11 @@ impl Plan {
 
     pub(super) fn wrap(&self) -> Wrap {
         [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp][usize::from(self.wrap)]
+    }
+
+    /// Whether there is anything to take normals from.
+    pub(super) fn has_relief(&self) -> bool {
+        self.height.is_some() || self.normal.is_some()
     }
 
     pub(super) fn is_mirrored(&self) -> bool {
