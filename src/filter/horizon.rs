@@ -23,7 +23,7 @@
 //!
 //! so that every line has one Gaussian in `z`, its own middle, and the weight `exp(-2 (A' - B'^2 / 4C') xi^2)`.
 
-use super::{Ellipse, Filtered, Footprint, isotropic};
+use super::{Ellipse, FarField, Filtered, Footprint, isotropic};
 use crate::settings::{Formulas, Settings};
 use crate::shade::LocalLights;
 use crate::simd::{Blend, TexelLanes, as_unsigned, exp_negative, high_half, low_half, sum, u32x8};
@@ -49,7 +49,40 @@ pub fn visible_mean(
     settings: &Settings,
     lights: Option<&LocalLights>,
 ) -> (Filtered, u64) {
-    let index = choose_level(surface, footprint, displacement, settings);
+    swept_mean(surface, footprint, displacement, (settings, settings.lines as f32), lights)
+}
+
+/// As [`visible_mean`], from the tables of the seen colour where the footprint is large.
+#[must_use]
+pub fn near_or_far_mean(
+    surface: &Surface,
+    far: &FarField,
+    footprint: &Footprint,
+    displacement: [f32; 2],
+    settings: &Settings,
+) -> (Filtered, u64) {
+    let share = far.share(surface, footprint, settings);
+    if share >= 1.0 {
+        return (far.mean(surface, footprint, displacement, settings), 0);
+    }
+    let texels = surface.texels_per_repeat(0);
+    let bias = far.level_bias([displacement[0] * texels[0], displacement[1] * texels[1]]);
+    let lines = (settings.lines << bias) as f32;
+    let (near, num_rows) = swept_mean(surface, footprint, displacement, (settings, lines), None);
+    if share == 0.0 {
+        return (near, num_rows);
+    }
+    (near.lerp(&far.mean(surface, footprint, displacement, settings), share), num_rows)
+}
+
+fn swept_mean(
+    surface: &Surface,
+    footprint: &Footprint,
+    displacement: [f32; 2],
+    (settings, lines): (&Settings, f32),
+    lights: Option<&LocalLights>,
+) -> (Filtered, u64) {
+    let index = choose_level(surface, footprint, displacement, (settings, lines));
     let texels = surface.texels_per_repeat(index);
     let ellipse = widened(footprint, texels, settings);
     let displacement = [displacement[0] * texels[0], displacement[1] * texels[1]];
@@ -75,14 +108,19 @@ fn widened(footprint: &Footprint, texels: [f32; 2], settings: &Settings) -> Elli
 }
 
 /// The finest level on which the footprint is at most `lines` texels across its shorter axis and its sweep short enough.
-fn choose_level(surface: &Surface, footprint: &Footprint, displacement: [f32; 2], settings: &Settings) -> usize {
+fn choose_level(
+    surface: &Surface,
+    footprint: &Footprint,
+    displacement: [f32; 2],
+    (settings, lines): (&Settings, f32),
+) -> usize {
     let last = surface.levels.len() - 1;
     let fits = |level: &usize| {
         let texels = surface.texels_per_repeat(*level);
         let ellipse = widened(footprint, texels, settings);
         let [short, long] = ellipse.squared_axes().map(f32::sqrt);
         let walk = (displacement[0] * texels[0]).abs().max((displacement[1] * texels[1]).abs());
-        2.0 * short <= settings.lines as f32 && 2.0 * long + walk <= MAX_ROWS
+        2.0 * short <= lines && 2.0 * long + walk <= MAX_ROWS
     };
     (0..last).find(fits).unwrap_or(last)
 }
