@@ -4,17 +4,21 @@
 //! `filter::horizon`). The visible part of each segment, moved onto the mean depth plane, is cut at the table's rows and
 //! added to the table texel it falls into; a texel is the mean of what falls into it.
 
-use super::FarField;
 use super::encode::FarImage;
+use super::{FarField, NUM_LENGTHS};
+use crate::filter::texel_set::lane_columns;
 use crate::simd::{Blend, TexelLanes, high_half, low_half};
-use crate::texture::{FULL_F32, Level, Surface};
+use crate::texture::{FULL_F32, Level, Surface, Wrap, wrap_index};
 use rayon::prelude::*;
 
 /// Greatest root-mean-square difference, of the surface's colour scale, that a level may make in what is seen.
 const MOST_LOSS: f32 = 0.012;
 
+/// The same for the level that tables are built from.
+const MOST_SOURCE_LOSS: f32 = 0.02;
+
 /// Directions in which the loss of a level is measured, per length.
-const NUM_PROBES: usize = 4;
+const NUM_PROBES: usize = 2;
 
 /// Mean depth of the surface, 0 to 1.
 pub(super) fn mean_depth(surface: &Surface) -> f32 {
@@ -24,26 +28,43 @@ pub(super) fn mean_depth(surface: &Surface) -> f32 {
 /// The tables of all directions.
 pub(super) fn images(surface: &Surface, far: &FarField) -> Vec<FarImage> {
     let size = table_size(surface, far.first_level);
-    let one = |i: usize| {
-        let displacement = far.displacement(i / far.num_azimuths, i % far.num_azimuths);
-        FarImage::new(size, seen(surface, 0, far, displacement))
-    };
-    (0..far.num_lengths * far.num_azimuths).into_par_iter().map(one).collect()
+    let source = source_level(surface, far);
+    let directions: Vec<_> = (0..NUM_LENGTHS).flat_map(|i| (0..far.num_azimuths(i)).map(move |j| (i, j))).collect();
+    let one = |(i, j)| FarImage::new(size, seen(surface, source, far, far.displacement(i, j)));
+    directions.into_par_iter().map(one).collect()
 }
 
-/// For each length, how many levels finer than level 1, 2 or 3 a sweep must be to lose less than [`MOST_LOSS`].
+/// The coarsest level, up to 1, whose sweep shows nearly what the base level's does: a quarter of the work.
+fn source_level(surface: &Surface, far: &FarField) -> usize {
+    let probes: Vec<_> = [2, NUM_LENGTHS / 2, NUM_LENGTHS - 2].into_iter().flat_map(|i| [(i, 0), (i, 3)]).collect();
+    let loss = |&(i, j): &(usize, usize)| {
+        let displacement = far.displacement(i, j);
+        square_difference(&seen(surface, 0, far, displacement), &seen(surface, 1, far, displacement))
+    };
+    let greatest = probes.par_iter().map(loss).reduce(|| 0.0, f32::max);
+    usize::from(far.first_level > 1 && greatest < MOST_SOURCE_LOSS * MOST_SOURCE_LOSS)
+}
+
+/// For each length, how many levels finer a sweep must be than its lines ask for: 2 where level 1 already loses more than
+/// [`MOST_LOSS`], 1 where level 2 does.
 pub(super) fn level_bias(surface: &Surface, far: &FarField) -> Vec<usize> {
     let loss = |length: usize, level: usize| {
         let squares = (0..NUM_PROBES).map(|i| {
-            let displacement = far.displacement(length, i * far.num_azimuths / NUM_PROBES + i % 2);
-            let (exact, coarse) = (seen(surface, 0, far, displacement), seen(surface, level, far, displacement));
-            let square = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| (a[c] - b[c]) * (a[c] - b[c])).sum::<f32>();
-            exact.iter().zip(&coarse).map(square).sum::<f32>() / (3 * exact.len()) as f32
+            let azimuth = (i * far.num_azimuths(length) / NUM_PROBES + i) % far.num_azimuths(length);
+            let exact = far.images[far.starts[length] + azimuth].colors();
+            square_difference(&exact, &seen(surface, level, far, far.displacement(length, azimuth)))
         });
         (squares.sum::<f32>() / NUM_PROBES as f32).sqrt()
     };
-    let bias = |length: usize| (1..=2).rev().find(|&level| loss(length, 3 - level) > MOST_LOSS).unwrap_or(0);
-    (0..far.num_lengths).into_par_iter().map(bias).collect()
+    let is_lost = |length: usize, level: usize| level < far.first_level && loss(length, level) > MOST_LOSS;
+    let bias = |length: usize| if is_lost(length, 1) { 2 } else { usize::from(is_lost(length, 2)) };
+    (0..NUM_LENGTHS).into_par_iter().map(bias).collect()
+}
+
+/// The mean square of the differences of two images.
+fn square_difference(a: &[[f32; 3]], b: &[[f32; 3]]) -> f32 {
+    let square = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| (a[c] - b[c]) * (a[c] - b[c])).sum::<f32>();
+    a.iter().zip(b).map(square).sum::<f32>() / (3 * a.len()) as f32
 }
 
 fn table_size(surface: &Surface, level: usize) -> [usize; 2] {
@@ -89,8 +110,8 @@ struct Sweep<'a> {
 /// The eight lines in one row.
 #[derive(Clone, Copy)]
 struct Row {
-    place: [f32; 8],
-    color: [[f32; 8]; 3],
+    place: TexelLanes,
+    color: [TexelLanes; 3],
 }
 
 impl<'a> Sweep<'a> {
@@ -111,23 +132,18 @@ impl<'a> Sweep<'a> {
         let mut horizon = previous.place;
         // What is seen of one period: between the record at its beginning and the same a period on.
         let (begin, end) = (-self.depth * self.mean_depth, num_rows as f32 - self.depth * self.mean_depth);
-        for i in 1 - lead.. {
+        let last = num_rows + self.depth as i32 + 1;
+        for i in 1 - lead..=last {
             let row = self.row(first, i);
-            let mut is_done = true;
-            for lane in 0..num_lines {
-                let place = row.place[lane];
-                if place > horizon[lane] {
-                    let from = horizon[lane].max(begin);
-                    let to = place.min(end);
-                    if to > from {
-                        self.add(lane as f32 + first as f32, [from, to], [&previous, &row], lane);
-                    }
-                    horizon[lane] = place;
+            let records = row.place.simd_gt(horizon).to_bitmask() & ((1 << num_lines) - 1);
+            if records != 0 {
+                let from = horizon.fast_max(TexelLanes::splat(begin));
+                let to = row.place.fast_min(TexelLanes::splat(end));
+                self.add(first, [from, to], [&previous, &row], records);
+                horizon = horizon.fast_max(row.place);
+                if horizon.simd_ge(TexelLanes::splat(end)).all() {
+                    return;
                 }
-                is_done &= horizon[lane] >= end;
-            }
-            if is_done || i > num_rows + self.depth as i32 + 1 {
-                return;
             }
             previous = row;
         }
@@ -148,32 +164,39 @@ impl<'a> Sweep<'a> {
         let (red_green, blue_height) = (pick(0), pick(1));
         let depth = TexelLanes::ONE - high_half(blue_height) * (1.0 / FULL_F32);
         Row {
-            place: (TexelLanes::splat(i as f32) - depth * self.depth).to_array(),
-            color: [low_half(red_green), high_half(red_green), low_half(blue_height)].map(TexelLanes::to_array),
+            place: TexelLanes::splat(i as f32) - depth * self.depth,
+            color: [low_half(red_green), high_half(red_green), low_half(blue_height)],
         }
     }
 
-    /// Adds the part from `begin` to `end` of the segment between two rows, cut at the table's rows.
-    fn add(&mut self, line: f32, [begin, end]: [f32; 2], [near, far]: [&Row; 2], lane: usize) {
-        let shift = self.depth * self.mean_depth;
-        let inverse = 1.0 / (far.place[lane] - near.place[lane]).max(1e-6);
-        let mut from = begin;
-        while from < end {
-            // Texel centres lie at whole numbers, so the table's texel edges are half a texel away.
-            let table_row = ((from + shift + 0.5 * self.toward) * self.scale[1] + 1e-4).floor();
-            let to = ((table_row + 1.0) / self.scale[1] - shift - 0.5 * self.toward).min(end).max(from + 1e-3);
-            let middle = (from + to) * 0.5;
-            let part = ((middle - near.place[lane]) * inverse).clamp(0.0, 1.0);
-            let eta = (middle + shift) * self.toward;
-            let column = ((line + self.shear * eta + 0.5) * self.scale[0]).floor() as i32;
-            let x = column.rem_euclid(self.size[0] as i32) as usize;
-            let y = (((eta + 0.5) * self.scale[1]).floor() as i32).rem_euclid(self.size[1] as i32) as usize;
-            let sum = &mut self.sums[y * self.size[0] + x];
-            for c in 0..3 {
-                sum[c] += (near.color[c][lane] + (far.color[c][lane] - near.color[c][lane]) * part) * (to - from);
+    /// Adds the parts from `from` to `to` of the segments between two rows, where there is a record.
+    fn add(&mut self, first: usize, [from, to]: [TexelLanes; 2], [near, far]: [&Row; 2], records: u32) {
+        let inverse = TexelLanes::ONE / (far.place - near.place).fast_max(TexelLanes::splat(1e-6));
+        let line = lane_columns(first as i32);
+        // Most parts are short and fall into one texel; a long one is cut into parts shorter than a texel.
+        let longest = ((to - from) * self.scale[1]).to_array();
+        let longest = (0..8).filter(|lane| records >> lane & 1 == 1).map(|lane| longest[lane]).fold(0.0, f32::max);
+        let num_parts = (longest * 2.0) as i32 + 1;
+        let length = (to - from) * (1.0 / num_parts as f32);
+        for part in 0..num_parts {
+            let middle = from + length * (part as f32 + 0.5);
+            let at = ((middle - near.place) * inverse).fast_max(TexelLanes::ZERO).fast_min(TexelLanes::ONE);
+            let color = |i: usize| (near.color[i] + (far.color[i] - near.color[i]) * at) * length;
+            let eta = (middle + self.depth * self.mean_depth) * self.toward;
+            // Texel centres lie at whole numbers.
+            let x = ((line + eta * self.shear + 0.5) * self.scale[0]).floor().fast_trunc_int().to_array();
+            let y = ((eta + 0.5) * self.scale[1]).floor().fast_trunc_int().to_array();
+            let sums = [color(0), color(1), color(2), length].map(TexelLanes::to_array);
+            let mut left = records;
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                if sums[3][lane] > 0.0 {
+                    let place = wrap_index(Wrap::Repeat, y[lane], self.size[1]) * self.size[0]
+                        + wrap_index(Wrap::Repeat, x[lane], self.size[0]);
+                    self.sums[place].iter_mut().zip(&sums).for_each(|(sum, lanes)| *sum += lanes[lane]);
+                }
             }
-            sum[3] += to - from;
-            from = to;
         }
     }
 }

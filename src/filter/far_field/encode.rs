@@ -41,6 +41,17 @@ impl FarImage {
         }
     }
 
+    /// The colours of the finest level, 0 to 1 of the surface's scale, row by row.
+    pub(super) fn colors(&self) -> Vec<[f32; 3]> {
+        let FarLevel { width, height, words } = &self.levels[0];
+        let decoded = |word: u32| {
+            let roots = [(word & 2047, 2047.0), (word >> 11 & 2047, 2047.0), (word >> 22, 1023.0)];
+            roots.map(|(root, most)| (root as f32 / most) * (root as f32 / most))
+        };
+        let rows = words.chunks_exact(width + APRON).take(*height);
+        rows.flat_map(|row| row[..*width].iter().map(|&word| decoded(word))).collect()
+    }
+
     /// A row of a level of the endless pattern.
     pub(super) fn row(&self, level: usize, y: i32) -> &[u32] {
         let FarLevel { width, height, words } = &self.levels[level];

@@ -20,22 +20,29 @@ use encode::FarImage;
 /// Texels of a table's finest level at the most: the larger the maps, the coarser the level that tables begin on.
 const MOST_TEXELS: usize = 128 * 128;
 
-/// Lengths of `D`, in texture repeats times the relief depth, that tables are made for: slopes from gentle to grazing. A
-/// gentler one hides too little to matter in a large footprint; a steeper one takes the last table.
-const SLOPES: [f32; 2] = [0.25, 32.0];
+/// Slopes that tables are made for, from gentle to grazing. A gentler one hides too little to matter in a large footprint;
+/// a steeper one takes the last table.
+const SLOPES: [f32; 2] = [0.25, 28.0];
+
+/// Lengths of `D` that tables are made for, in geometric steps over [`SLOPES`].
+const NUM_LENGTHS: usize = 12;
+
+/// Most azimuths of a length, and most tables: more cost more time to build than they gain.
+const MOST_AZIMUTHS: usize = 72;
+const MOST_TABLES: usize = 400;
 
 /// Tables of the seen colour of one surface.
 #[derive(Clone, Debug)]
 pub struct FarField {
     /// The mip level of the tables' finest level.
     first_level: usize,
-    /// Lengths of `D` in base texels, from the shortest, as [`pseudo_log`] values: the first and the step.
+    /// Lengths of `D` in base texels as [`pseudo_log`] values: the first and the step.
     lengths: [f32; 2],
-    num_lengths: usize,
-    num_azimuths: usize,
+    /// Where each length's tables begin in `images`, and where the last's end.
+    starts: Vec<usize>,
     /// Mean depth of the surface, 0 to 1.
     mean_depth: f32,
-    /// By length, then azimuth.
+    /// By length, then azimuth: the longer the displacement, the more azimuths.
     images: Vec<FarImage>,
     /// How many mip levels finer a sweep must be than its lines ask for, by length.
     level_bias: Vec<usize>,
@@ -50,16 +57,14 @@ impl FarField {
         if surface.relief_depth == 0.0 || surface.wrap == Wrap::Clamp || first_level == 0 {
             return None;
         }
-        let [num_lengths, num_azimuths] = grid(surface, first_level, settings);
+        let starts = table_starts(surface, first_level, settings);
         let texels = surface.texels_per_repeat(0);
         let unit = surface.relief_depth * texels[0].max(texels[1]);
         let [first, last] = SLOPES.map(|slope| pseudo_log(slope * unit));
-        let step = (last - first) / (num_lengths - 1) as f32;
         let mut far = Self {
             first_level,
-            lengths: [first, step],
-            num_lengths,
-            num_azimuths,
+            lengths: [first, (last - first) / (NUM_LENGTHS - 1) as f32],
+            starts,
             mean_depth: build::mean_depth(surface),
             images: Vec::new(),
             level_bias: Vec::new(),
@@ -79,43 +84,64 @@ impl FarField {
     /// level would lose what hides behind ridges finer than its texels.
     #[must_use]
     pub fn level_bias(&self, displacement: [f32; 2]) -> usize {
-        let [du, dv] = displacement;
+        self.level_bias[(self.place_of_length(displacement) + 0.5) as usize]
+    }
+
+    /// Where a displacement's length lies among the tables', 0 to the last.
+    fn place_of_length(&self, [du, dv]: [f32; 2]) -> f32 {
         let place = (pseudo_log((du * du + dv * dv).sqrt()) - self.lengths[0]) / self.lengths[1];
-        self.level_bias[(place + 0.5).clamp(0.0, (self.num_lengths - 1) as f32) as usize]
+        place.clamp(0.0, (NUM_LENGTHS - 1) as f32)
+    }
+
+    fn num_azimuths(&self, length: usize) -> usize {
+        self.starts[length + 1] - self.starts[length]
     }
 
     /// The displacement of a table, in base texels.
     fn displacement(&self, length: usize, azimuth: usize) -> [f32; 2] {
         let size = pseudo_exp(self.lengths[0] + self.lengths[1] * length as f32);
-        let [x, y] = diamond_direction(4.0 * azimuth as f32 / self.num_azimuths as f32);
+        let [x, y] = diamond_direction(4.0 * azimuth as f32 / self.num_azimuths(length) as f32);
         [x * size, y * size]
     }
 
     /// The four nearest tables and their shares.
-    fn neighbours(&self, [du, dv]: [f32; 2]) -> [(usize, f32); 4] {
-        let length = (pseudo_log((du * du + dv * dv).sqrt()) - self.lengths[0]) / self.lengths[1];
-        let length = length.clamp(0.0, (self.num_lengths - 1) as f32);
-        let near = (length as usize).min(self.num_lengths - 2);
+    fn neighbours(&self, displacement: [f32; 2]) -> [(usize, f32); 4] {
+        let length = self.place_of_length(displacement);
+        let near = (length as usize).min(NUM_LENGTHS - 2);
         let along = length - near as f32;
-        let azimuth = diamond_angle(du, dv) * (self.num_azimuths as f32 * 0.25);
-        let (left, across) = (azimuth as usize % self.num_azimuths, azimuth - azimuth.floor());
-        let right = (left + 1) % self.num_azimuths;
-        let at = |length: usize, azimuth: usize| length * self.num_azimuths + azimuth;
-        [
-            (at(near, left), (1.0 - along) * (1.0 - across)),
-            (at(near, right), (1.0 - along) * across),
-            (at(near + 1, left), along * (1.0 - across)),
-            (at(near + 1, right), along * across),
-        ]
+        let ([a, b], [c, d]) = (self.pair(near, displacement), self.pair(near + 1, displacement));
+        [(a.0, a.1 * (1.0 - along)), (b.0, b.1 * (1.0 - along)), (c.0, c.1 * along), (d.0, d.1 * along)]
+    }
+
+    /// The two nearest tables of a length and their shares.
+    fn pair(&self, length: usize, [du, dv]: [f32; 2]) -> [(usize, f32); 2] {
+        let num = self.num_azimuths(length);
+        let azimuth = diamond_angle(du, dv) * (num as f32 * 0.25);
+        let (left, part) = (azimuth as usize % num, azimuth - azimuth.floor());
+        [(self.starts[length] + left, 1.0 - part), (self.starts[length] + (left + 1) % num, part)]
     }
 }
 
-/// How many lengths and azimuths fit into the memory: about twice as many azimuths.
-fn grid(surface: &Surface, first_level: usize, settings: &Settings) -> [usize; 2] {
+/// Where each length's tables begin: as many azimuths as the memory allows, in proportion to the length, since an error
+/// in azimuth moves what lies above or below the mean depth by that much across the view.
+fn table_starts(surface: &Surface, first_level: usize, settings: &Settings) -> Vec<usize> {
     let words: usize = surface.levels[first_level..].iter().map(|l| FarImage::num_words(l.width, l.height)).sum();
-    let num = (settings.far_field_mib as usize * (1 << 20) / (words * 4)).clamp(16, 12 * 32);
-    let num_azimuths = (((2 * num) as f32).sqrt() as usize / 4 * 4).max(8);
-    [(num / num_azimuths).max(2), num_azimuths]
+    let num = (settings.far_field_mib as usize * (1 << 20) / (words * 4)).min(MOST_TABLES);
+    let azimuths = |scale: f32| {
+        let ratio = SLOPES[1] / SLOPES[0];
+        let growth =
+            |i: usize| (pseudo_exp(pseudo_log(ratio) * (i as f32 / (NUM_LENGTHS - 1) as f32)) * scale) as usize;
+        (0..NUM_LENGTHS).map(|i| (growth(i) / 4 * 4).clamp(16, MOST_AZIMUTHS)).collect::<Vec<_>>()
+    };
+    let scales = (0..400).map(|i| 0.05 * i as f32).rev();
+    let fitting = scales.map(azimuths).find(|azimuths| azimuths.iter().sum::<usize>() <= num);
+    let fitting = fitting.unwrap_or_else(|| vec![4; NUM_LENGTHS]);
+    std::iter::once(0)
+        .chain(fitting.iter().scan(0, |sum, num| {
+            *sum += num;
+            Some(*sum)
+        }))
+        .collect()
 }
 
 /// The binary logarithm, linear between powers of two: the same bits on every machine.
