@@ -83,3 +83,23 @@ pub fn mask(comparison: f32x8) -> i32x8 {
 pub fn lanes(mask: i32x8) -> f32x8 {
     wide::bytemuck::cast(mask)
 }
+
+/// Interpolates between packed texels, both 16-bit halves of a word at once; halves must be below 32768.
+#[derive(Clone, Copy, Debug)]
+pub struct Blend(wide::i16x16);
+
+impl Blend {
+    /// For a place between near (0) and far (just under 1), per lane.
+    #[must_use]
+    pub fn new(part: f32x8) -> Self {
+        let part = as_unsigned((part * 32767.0).fast_trunc_int());
+        Self(wide::bytemuck::cast(part | part << 16_u32))
+    }
+
+    /// The words between `near` and `far`, each half within those of the two.
+    #[must_use]
+    pub fn mix(self, [near, far]: [u32x8; 2]) -> u32x8 {
+        let (near, far): (wide::i16x16, wide::i16x16) = (wide::bytemuck::cast(near), wide::bytemuck::cast(far));
+        wide::bytemuck::cast(near + (far - near).mul_scale_round(self.0))
+    }
+}

@@ -23,11 +23,11 @@
 //!
 //! so that every line has one Gaussian in `z`, its own middle, and the weight `exp(-2 (A' - B'^2 / 4C') xi^2)`.
 
-use super::{Ellipse, Filtered, Footprint, isotropic};
+use super::{Ellipse, FarField, Filtered, Footprint, isotropic};
 use crate::settings::{Formulas, Settings};
 use crate::shade::LocalLights;
-use crate::simd::{TexelLanes, exp_negative, high_half, low_half, sum};
-use crate::texture::{Level, Surface};
+use crate::simd::{Blend, TexelLanes, as_unsigned, exp_negative, high_half, low_half, sum, u32x8};
+use crate::texture::{FULL_F32, Level, Surface};
 use glam::Vec3;
 
 /// Most rows of a sweep; a longer one takes a coarser level. Bounds the time of a pixel for any input.
@@ -35,7 +35,7 @@ pub const MAX_ROWS: f32 = 512.0;
 
 /// Footprints narrower than this many texels take eight lines less than a texel apart, interpolated between texels;
 /// eight such lines and their neighbours span at most eight texels.
-const NARROW: f32 = 6.5;
+const NARROW: f32 = 4.5;
 
 /// Displacements shorter than this many texels do not hide anything that a texel could show.
 const FLAT: f32 = 1.0 / 64.0;
@@ -49,7 +49,40 @@ pub fn visible_mean(
     settings: &Settings,
     lights: Option<&LocalLights>,
 ) -> (Filtered, u64) {
-    let index = choose_level(surface, footprint, displacement, settings);
+    swept_mean(surface, footprint, displacement, (settings, settings.lines as f32), lights)
+}
+
+/// As [`visible_mean`], from the tables of the seen colour where the footprint is large.
+#[must_use]
+pub fn near_or_far_mean(
+    surface: &Surface,
+    far: &FarField,
+    footprint: &Footprint,
+    displacement: [f32; 2],
+    settings: &Settings,
+) -> (Filtered, u64) {
+    let share = far.share(surface, footprint, settings);
+    if share >= 1.0 {
+        return (far.mean(surface, footprint, displacement, settings), 0);
+    }
+    let texels = surface.texels_per_repeat(0);
+    let bias = far.level_bias([displacement[0] * texels[0], displacement[1] * texels[1]]);
+    let lines = (settings.lines << bias) as f32;
+    let (near, num_rows) = swept_mean(surface, footprint, displacement, (settings, lines), None);
+    if share == 0.0 {
+        return (near, num_rows);
+    }
+    (near.lerp(&far.mean(surface, footprint, displacement, settings), share), num_rows)
+}
+
+fn swept_mean(
+    surface: &Surface,
+    footprint: &Footprint,
+    displacement: [f32; 2],
+    (settings, lines): (&Settings, f32),
+    lights: Option<&LocalLights>,
+) -> (Filtered, u64) {
+    let index = choose_level(surface, footprint, displacement, (settings, lines));
     let texels = surface.texels_per_repeat(index);
     let ellipse = widened(footprint, texels, settings);
     let displacement = [displacement[0] * texels[0], displacement[1] * texels[1]];
@@ -75,14 +108,19 @@ fn widened(footprint: &Footprint, texels: [f32; 2], settings: &Settings) -> Elli
 }
 
 /// The finest level on which the footprint is at most `lines` texels across its shorter axis and its sweep short enough.
-fn choose_level(surface: &Surface, footprint: &Footprint, displacement: [f32; 2], settings: &Settings) -> usize {
+fn choose_level(
+    surface: &Surface,
+    footprint: &Footprint,
+    displacement: [f32; 2],
+    (settings, lines): (&Settings, f32),
+) -> usize {
     let last = surface.levels.len() - 1;
     let fits = |level: &usize| {
         let texels = surface.texels_per_repeat(*level);
         let ellipse = widened(footprint, texels, settings);
         let [short, long] = ellipse.squared_axes().map(f32::sqrt);
         let walk = (displacement[0] * texels[0]).abs().max((displacement[1] * texels[1]).abs());
-        2.0 * short <= settings.lines as f32 && 2.0 * long + walk <= MAX_ROWS
+        2.0 * short <= lines && 2.0 * long + walk <= MAX_ROWS
     };
     (0..last).find(fits).unwrap_or(last)
 }
@@ -117,98 +155,104 @@ impl<'a> Sweep<'a> {
 
     fn run(&self, lights: Option<&LocalLights>) -> (Option<Filtered>, u64) {
         let width = 2.0 * self.half[0];
+        let (is_narrow, num_blocks) = (width < NARROW, (width * 0.125).ceil().max(1.0) as i32);
+        let spacing = if is_narrow { width * 0.125 } else { 1.0 };
         let mut total = Totals::default();
         let mut num_rows = 0;
-        if width < NARROW {
-            let spacing = width / 8.0;
-            num_rows += self.lines::<true>(-self.half[0] + 0.5 * spacing, spacing, lights, &mut total);
-        } else {
-            let num_blocks = (width / 8.0).ceil() as i32;
-            let first = -(num_blocks * 4) as f32 + 0.5;
-            for block in 0..num_blocks {
-                num_rows += self.lines::<false>(first + (8 * block) as f32, 1.0, lights, &mut total);
-            }
+        for block in 0..num_blocks {
+            let first = spacing * ((8 * block - 4 * num_blocks) as f32 + 0.5);
+            num_rows += match (is_narrow, lights) {
+                (true, None) => self.lines::<true, false>(first, spacing, &LocalLights::default(), &mut total),
+                (false, None) => self.lines::<false, false>(first, spacing, &LocalLights::default(), &mut total),
+                (true, Some(lights)) => self.lines::<true, true>(first, spacing, lights, &mut total),
+                (false, Some(lights)) => self.lines::<false, true>(first, spacing, lights, &mut total),
+            };
         }
         (total.mean(lights.is_some()), num_rows)
     }
 
-    /// Sweeps eight lines, the first at `xi`.
-    fn lines<const NARROW: bool>(
+    /// Sweeps eight lines, the first at `xi = first`, and adds their sums to `total`. Returns the number of rows.
+    fn lines<const NARROW: bool, const LIT: bool>(
         &self,
         first: f32,
         spacing: f32,
-        lights: Option<&LocalLights>,
+        lights: &LocalLights,
         total: &mut Totals,
     ) -> u64 {
-        let index = TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-        let xi = index * spacing + first;
-        let outside = xi * xi * self.across;
-        let end = (TexelLanes::ONE - outside).fast_max(TexelLanes::ZERO).sqrt();
+        let xi = lane_indices() * spacing + first;
+        let outside = (xi * xi * self.across).fast_min(TexelLanes::ONE);
+        let end = (TexelLanes::ONE - outside).sqrt();
         let toward = if self.depth < 0.0 { -1.0 } else { 1.0 };
-        let rise = self.along * self.depth.abs();
-        // z of the polygon at the row of the middle, seen in the walking direction.
-        let middle = xi * (self.skew * self.along * toward);
-        let mut lines = Lines {
-            horizon: -end,
-            weight: integral(-end),
-            previous: TexelLanes::splat(-1e9),
-            texel: [TexelLanes::ZERO; 6],
-            sums: Totals::default(),
-        };
-        let start_weight = lines.weight;
-        let y0 = self.center[1];
+        let (per_row, rise) = (self.along, self.along * self.depth.abs() * (1.0 / FULL_F32));
         // No relief of the first row can be seen within the ellipse: the record begins at its edge.
-        let first_row = (toward * y0 - self.half[1]).floor() as i32 - 1;
+        let first_row = (toward * self.center[1] - self.half[1]).floor() - 1.0;
         let num_rows = (2.0 * self.half[1] + self.depth.abs()).ceil() as i32 + 3;
+        let eta = toward * first_row - self.center[1];
+        // z of the deepest relief in the first row, seen in the walking direction.
+        let mut deepest = xi * (self.skew * self.along * toward) + (self.along * (toward * eta - self.depth.abs()));
+        let mut x = self.center[0] + first + self.shear * eta;
+        let mut y = (toward * first_row) as i32;
+        let start_weight = integral(-end);
+        let mut lines = Lines::starting(-end, start_weight);
         let mut swept = 0;
-        for i in 0..num_rows {
-            let y = toward * (first_row + i) as f32;
-            let eta = y - y0;
-            let x = self.center[0] + self.shear * eta + first;
-            let (texel, height) = self.fetch::<NARROW>(x, y as i32, spacing, lights.is_some());
-            let z = middle + self.along * toward * eta - (TexelLanes::ONE - height) * rise;
-            lines.add(z, end, texel, lights);
+        while swept < num_rows {
+            let texel = self.fetch::<NARROW, LIT>(x, y, spacing);
+            lines.add::<LIT>(texel.height * rise + deepest, end, texel, lights);
             swept += 1;
             if lines.horizon.simd_ge(end).all() {
                 break;
             }
+            deepest += per_row;
+            x += self.shear * toward;
+            y += toward as i32;
         }
-        let share = exp_negative((outside + outside).fast_min(TexelLanes::splat(2.0)));
-        let share = outside.simd_lt(TexelLanes::ONE).select(share, TexelLanes::ZERO);
-        total.add(&lines.sums, share, lines.weight - start_weight);
-        swept
+        total.add::<LIT>(&lines, exp_negative(outside + outside), start_weight);
+        swept as u64
     }
 
-    /// Colour (and normal) and height of the eight lines in row `y`, the first line at `x`.
-    fn fetch<const NARROW: bool>(&self, x: f32, y: i32, spacing: f32, lit: bool) -> ([TexelLanes; 6], TexelLanes) {
+    /// The texels of the eight lines in row `y`, the first line at `x`.
+    #[inline(always)]
+    fn fetch<const NARROW: bool, const LIT: bool>(&self, x: f32, y: i32, spacing: f32) -> Texels {
         let row = self.level.row(y);
         let stride = self.level.stride();
-        let index = TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         let left = x.floor();
         let start = self.level.run_start(left as i32);
-        let place = index * spacing + (x - left);
-        let cell = if NARROW { place.floor() } else { index };
-        let part = place - cell;
-        let pick = |plane: usize, far: u32| {
+        let place = lane_indices() * spacing + (x - left);
+        let cell = place.fast_trunc_int();
+        let part = if NARROW { place - TexelLanes::from_i32x8(cell) } else { TexelLanes::splat(x - left) };
+        let blend = Blend::new(part);
+        let pick = |plane: usize| {
             if NARROW {
-                let lanes: crate::simd::u32x8 = crate::simd::as_unsigned(cell.fast_trunc_int());
-                Level::run(row, start + plane * stride).shuffle(lanes + crate::simd::u32x8::splat(far))
+                let lanes = as_unsigned(cell);
+                let run = Level::run(row, start + plane * stride);
+                [run.shuffle(lanes), run.shuffle(lanes + u32x8::splat(1))]
             } else {
-                Level::run(row, start + plane * stride + far as usize)
+                [Level::run(row, start + plane * stride), Level::run(row, start + plane * stride + 1)]
             }
         };
-        let mix = |near: TexelLanes, far: TexelLanes| near + (far - near) * part;
-        let [rg0, rg1, bh0, bh1] = [pick(0, 0), pick(0, 1), pick(1, 0), pick(1, 1)];
-        let mut texel = [TexelLanes::ZERO; 6];
-        texel[0] = mix(low_half(rg0), low_half(rg1));
-        texel[1] = mix(high_half(rg0), high_half(rg1));
-        texel[2] = mix(low_half(bh0), low_half(bh1));
-        if lit && self.level.has_normals() {
-            let (near, far) = (super::unpack_normals(pick(2, 0)), super::unpack_normals(pick(2, 1)));
-            (0..3).for_each(|i| texel[3 + i] = mix(near[i], far[i]));
+        let (red_green, blue_height) = (blend.mix(pick(0)), blend.mix(pick(1)));
+        let color = [low_half(red_green), high_half(red_green), low_half(blue_height)];
+        let mut normal = [TexelLanes::ZERO; 3];
+        if LIT && self.level.has_normals() {
+            let [near, far] = pick(2).map(super::unpack_normals);
+            normal = std::array::from_fn(|i| near[i] + (far[i] - near[i]) * part);
+        } else if LIT {
+            normal[2] = TexelLanes::ONE;
         }
-        (texel, mix(high_half(bh0), high_half(bh1)) * (1.0 / 65535.0))
+        Texels { color, normal, height: high_half(blue_height) }
     }
+}
+
+/// Eight texels, one of each line.
+#[derive(Clone, Copy, Default)]
+struct Texels {
+    color: [TexelLanes; 3],
+    normal: [TexelLanes; 3],
+    height: TexelLanes,
+}
+
+fn lane_indices() -> TexelLanes {
+    TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
 }
 
 /// `G(z)`, the integral of `exp(-2 z^2)` from 0, for z within -1 to 1: the integral of the even polynomial of degree 8
@@ -223,32 +267,38 @@ struct Lines {
     /// M, the record so far, and `G(M)`.
     horizon: TexelLanes,
     weight: TexelLanes,
-    /// The last row's place and texel.
-    previous: TexelLanes,
-    texel: [TexelLanes; 6],
-    sums: Totals,
+    /// The last row's place and texels.
+    place: TexelLanes,
+    texel: Texels,
+    color: [TexelLanes; 3],
+    normal: [TexelLanes; 3],
 }
 
 impl Lines {
-    fn add(&mut self, z: TexelLanes, end: TexelLanes, texel: [TexelLanes; 6], lights: Option<&LocalLights>) {
+    fn starting(horizon: TexelLanes, weight: TexelLanes) -> Self {
+        let zero = [TexelLanes::ZERO; 3];
+        Self { horizon, weight, place: TexelLanes::splat(-1e9), texel: Texels::default(), color: zero, normal: zero }
+    }
+
+    /// Adds the segments from the last row's texels to these, at the projected places `z`.
+    #[inline(always)]
+    fn add<const LIT: bool>(&mut self, z: TexelLanes, end: TexelLanes, texel: Texels, lights: &LocalLights) {
         let record = z.fast_min(end).fast_max(self.horizon);
         let weight = integral(record);
         let visible = weight - self.weight;
         // Where the middle of the visible part lies between the last texel (0) and this one (1).
-        let length = (z - self.previous).fast_max(TexelLanes::splat(1e-6));
-        let middle = ((record + self.horizon) * 0.5 - self.previous) / length;
-        let middle = middle.fast_min(TexelLanes::ONE).fast_max(TexelLanes::ZERO);
-        let at = |i: usize| self.texel[i] + (texel[i] - self.texel[i]) * middle;
-        let mut color = [at(0), at(1), at(2)];
-        self.sums.weight += visible;
-        if let Some(lights) = lights {
-            let normal = [at(3), at(4), at(5)];
+        let length = (z - self.place).fast_max(TexelLanes::splat(1e-6));
+        let middle = ((record + self.horizon) * 0.5 - self.place) / length;
+        let at = |from: TexelLanes, to: TexelLanes| from + (to - from) * middle;
+        let mut color: [TexelLanes; 3] = std::array::from_fn(|i| at(self.texel.color[i], texel.color[i]));
+        if LIT {
+            let normal = std::array::from_fn(|i| at(self.texel.normal[i], texel.normal[i]));
             let light = diffuse(lights, &normal);
             (0..3).for_each(|i| color[i] *= light[i]);
-            (0..3).for_each(|i| self.sums.normal[i] += normal[i] * visible);
+            (0..3).for_each(|i| self.normal[i] += normal[i] * visible);
         }
-        (0..3).for_each(|i| self.sums.color[i] += color[i] * visible);
-        (self.horizon, self.weight, self.previous, self.texel) = (record, weight, z, texel);
+        (0..3).for_each(|i| self.color[i] += color[i] * visible);
+        (self.horizon, self.weight, self.place, self.texel) = (record, weight, z, texel);
     }
 }
 
@@ -273,10 +323,12 @@ struct Totals {
 
 impl Totals {
     /// Adds the sums of eight lines, each times its share.
-    fn add(&mut self, lines: &Self, share: TexelLanes, weight: TexelLanes) {
-        self.weight += weight * share;
+    fn add<const LIT: bool>(&mut self, lines: &Lines, share: TexelLanes, start_weight: TexelLanes) {
+        self.weight += (lines.weight - start_weight) * share;
         (0..3).for_each(|i| self.color[i] += lines.color[i] * share);
-        (0..3).for_each(|i| self.normal[i] += lines.normal[i] * share);
+        if LIT {
+            (0..3).for_each(|i| self.normal[i] += lines.normal[i] * share);
+        }
     }
 
     fn mean(&self, lit: bool) -> Option<Filtered> {

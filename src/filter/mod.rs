@@ -5,6 +5,7 @@
 
 mod ellipse;
 pub mod ewa;
+mod far_field;
 mod footprint;
 pub mod horizon;
 pub mod isotropic;
@@ -14,6 +15,7 @@ pub mod truth;
 pub mod visible;
 
 pub use ellipse::{Ellipse, RECONSTRUCTION};
+pub use far_field::FarField;
 pub use footprint::{Corner, Differences, Footprint, at_pixel, differences};
 pub use texel_set::{TexelRow, TexelSet};
 
@@ -27,7 +29,7 @@ const MAX_TEXELS: f32 = (1 << 20) as f32;
 /// What a filter returns: means of the stored texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Filtered {
-    /// Linear RGB as stored: 65535 stands for the surface's `color_scale`.
+    /// Linear RGB as stored: [`FULL`](crate::texture::FULL) stands for the surface's `color_scale`.
     pub color: [f32; 3],
     /// Mean normal in the texture frame; shorter than one where normals differ.
     pub normal: [f32; 3],

@@ -9,10 +9,10 @@ use super::TexelSet;
 use super::texel_set::TexelRow;
 use crate::settings::Visibility;
 use crate::simd::{TexelLanes, high_half};
-use crate::texture::Level;
+use crate::texture::{FULL_F32, Level};
 
-/// How much higher than the ray, of 65535, relief must be to hide a texel: rounding alone must not.
-const TOLERANCE: f32 = 0.125;
+/// How much higher than the ray, in stored units of height, relief must be to hide a texel: rounding alone must not.
+const TOLERANCE: f32 = 1.0 / 16.0;
 
 /// The heights of a level and the direction to the eye.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +21,7 @@ pub struct Occlusion<'a> {
     /// Texels towards the eye per step; the longer component is 1 or -1.
     step: [f32; 2],
     runs_along_x: bool,
-    /// How much the ray rises per step, of 65535.
+    /// How much the ray rises per step.
     rise: f32,
 }
 
@@ -32,7 +32,7 @@ impl<'a> Occlusion<'a> {
         let [dx, dy] = displacement;
         let runs_along_x = dx.abs() > dy.abs();
         let length = dx.abs().max(dy.abs()).max(1e-3);
-        Self { level, step: [-dx / length, -dy / length], runs_along_x, rise: 65535.0 / length }
+        Self { level, step: [-dx / length, -dy / length], runs_along_x, rise: FULL_F32 / length }
     }
 
     /// Which of the texels of `bits`, the first at column `x` of row `y`, the eye sees.
@@ -41,13 +41,13 @@ impl<'a> Occlusion<'a> {
         let mut height = self.heights(x as f32, y as f32);
         let mut hidden = 0;
         // A ray that starts at height 0 is above everything after this many steps.
-        let num_steps = (65535.0 / self.rise).ceil() as i32;
+        let num_steps = (FULL_F32 / self.rise).ceil() as i32;
         for i in 1..=num_steps {
             height += self.rise;
             let relief = self.heights_across(x, y, i as f32);
             hidden |= relief.simd_gt(height + TOLERANCE).to_bitmask() as u8;
             let open = bits & !hidden;
-            if open == 0 || (height.simd_lt(TexelLanes::splat(65535.0)).to_bitmask() as u8 & open) == 0 {
+            if open == 0 || (height.simd_lt(TexelLanes::splat(FULL_F32)).to_bitmask() as u8 & open) == 0 {
                 break;
             }
         }
@@ -59,7 +59,7 @@ impl<'a> Occlusion<'a> {
     #[must_use]
     pub fn coverer(&self, x: i32, y: i32) -> Option<[i32; 2]> {
         let mut height = self.heights(x as f32, y as f32).as_array()[0];
-        for i in 1..=(65535.0 / self.rise).ceil() as i32 {
+        for i in 1..=(FULL_F32 / self.rise).ceil() as i32 {
             height += self.rise;
             let [near, far, part] = self.neighbours_across(x, y, i as f32).map(|lanes| lanes.as_array()[0]);
             if near + (far - near) * part > height + TOLERANCE {
@@ -70,14 +70,14 @@ impl<'a> Occlusion<'a> {
                 texel[across] += i32::from(far > near);
                 return Some(texel);
             }
-            if height >= 65535.0 {
+            if height >= FULL_F32 {
                 return None;
             }
         }
         None
     }
 
-    /// Heights, of 65535, of eight neighbouring texels.
+    /// Heights as stored of eight neighbouring texels.
     fn heights(&self, x: f32, y: f32) -> TexelLanes {
         let row = self.level.row(y as i32);
         high_half(Level::run(row, self.level.run_start(x as i32) + self.level.stride()))

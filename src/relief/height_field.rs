@@ -5,9 +5,9 @@
 //! and stores the greatest height in them: a ray above it passes the node without a hit. (Maximum mipmaps: Tevs,
 //! Ihrke, Seidel 2008.)
 
-use crate::texture::{Surface, Wrap};
+use crate::texture::{FULL_F32, Surface, Wrap};
 
-/// Heights of a surface's base level, 0 to 1 stored as 0 to 65535, with maxima.
+/// Heights of a surface's base level, 0 to 1 stored as 0 to [`FULL`](crate::texture::FULL), with maxima.
 #[derive(Clone, Debug)]
 pub struct HeightField {
     /// Texels along u and v before the pattern wraps.
@@ -70,7 +70,7 @@ impl HeightField {
         if self.is_clamped { i.clamp(-1, self.size[axis] - 1) } else { i.rem_euclid(self.size[axis]) }
     }
 
-    /// The heights, 0 to 65535, at the corners of a folded cell: (0,0), (1,0), (0,1), (1,1).
+    /// The heights, 0 to [`FULL`](crate::texture::FULL), at the corners of a folded cell: (0,0), (1,0), (0,1), (1,1).
     #[must_use]
     pub fn corners(&self, x: i32, y: i32) -> [f32; 4] {
         let [w, h] = self.size;
@@ -84,7 +84,7 @@ impl HeightField {
         [at(x, y), at(right, y), at(x, above), at(right, above)]
     }
 
-    /// The greatest height, 0 to 65535, in the node of level 1 or more that holds a folded cell.
+    /// The greatest height, 0 to [`FULL`](crate::texture::FULL), in the node of level 1 or more that holds a folded cell.
     #[must_use]
     pub fn node_max(&self, level: i32, x: i32, y: i32) -> f32 {
         let nodes = &self.nodes[level as usize - 1];
@@ -98,7 +98,7 @@ impl HeightField {
         let (fx, fy) = (u - 0.5 - x, v - 0.5 - y);
         let [a, b, c, d] = self.corners(self.fold(0, x as i32), self.fold(1, y as i32)).map(f64::from);
         let (low, high) = (a + (b - a) * fx, c + (d - c) * fx);
-        (low + (high - low) * fy) / 65535.0
+        (low + (high - low) * fy) / f64::from(FULL_F32)
     }
 
     fn build_nodes(&self) -> Vec<NodeLevel> {

@@ -7,6 +7,7 @@
 
 use super::{HeightField, MAX_SLOPE, finite};
 use crate::simd::{PixelLanes, as_unsigned, i32x8, lanes, mask};
+use crate::texture::FULL_F32;
 
 /// Most steps of a ray. A walk of 64 repeats over a map of any size that opens every node takes fewer in practice;
 /// the bound makes the time of a hostile input finite, and the ray then ends where it is.
@@ -137,8 +138,8 @@ impl Rays {
     fn node_heights(&self, field: &HeightField, folded: &[i32x8; 2]) -> PixelLanes {
         let (levels, x, y) = (self.level.to_array(), folded[0].to_array(), folded[1].to_array());
         let height =
-            |lane: usize| if levels[lane] == 0 { 65535.0 } else { field.node_max(levels[lane], x[lane], y[lane]) };
-        PixelLanes::new(std::array::from_fn(height)) * (1.0 / 65535.0)
+            |lane: usize| if levels[lane] == 0 { FULL_F32 } else { field.node_max(levels[lane], x[lane], y[lane]) };
+        PixelLanes::new(std::array::from_fn(height)) * (1.0 / FULL_F32)
     }
 
     /// Depth at which the rays are a nudge beyond their nodes.
@@ -162,7 +163,7 @@ impl Rays {
             let heights = field.corners(xs[lane], ys[lane]);
             (0..4).for_each(|i| corners[i][lane] = heights[i]);
         }
-        let [h00, h10, h01, h11] = corners.map(|c| PixelLanes::new(c) * (1.0 / 65535.0));
+        let [h00, h10, h01, h11] = corners.map(|c| PixelLanes::new(c) * (1.0 / FULL_F32));
         let (x, y) = (place[0] - nodes.cell[0], place[1] - nodes.cell[1]);
         let (hx, hy, hxy) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
         let [dx, dy] = self.step;

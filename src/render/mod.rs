@@ -9,13 +9,13 @@
 mod quads;
 
 use crate::error::Result;
-use crate::filter::{parallax, truth};
+use crate::filter::{FarField, parallax, truth};
 use crate::frame::Frame;
 use crate::geometry::Geometry;
 use crate::raster::Rasterizer;
 use crate::relief::HeightField;
-use crate::scene::{Camera, Scene};
-use crate::settings::{Filter, Settings};
+use crate::scene::{Camera, Material, Scene};
+use crate::settings::{Filter, Lighting, Settings};
 use crate::texture::Surface;
 use quads::QuadShader;
 use std::sync::Arc;
@@ -49,6 +49,8 @@ pub struct Renderer {
     settings: Settings,
     /// The height field of each material that has relief; shared where the surface is.
     fields: Vec<Option<Arc<HeightField>>>,
+    /// The tables of the same materials for distant footprints; empty until they are needed.
+    far_fields: Vec<Option<Arc<FarField>>>,
     kernel: truth::Kernel,
     offsets: Vec<[f32; 2]>,
     geometry: Geometry,
@@ -62,11 +64,13 @@ impl Renderer {
     /// Names the first setting or part of the scene that is not valid.
     pub fn new(scene: Scene, settings: Settings) -> Result<Self> {
         scene.validate()?;
-        let fields = height_fields(&scene);
+        let fields = per_surface(&scene, |surface| Some(HeightField::new(surface)));
+        let far_fields = vec![None; scene.materials.len()];
         let mut renderer = Self {
             scene,
             settings: Settings::default(),
             fields,
+            far_fields,
             kernel: truth::Kernel::new(1),
             offsets: Vec::new(),
             geometry: Geometry::default(),
@@ -86,6 +90,15 @@ impl Renderer {
             self.kernel = truth::Kernel::new(settings.samples);
         }
         self.offsets = parallax::offsets(settings.samples);
+        let wants_far =
+            settings.filter == Filter::Horizon && settings.far_field && settings.lighting == Lighting::Unlit;
+        let has_far =
+            self.far_fields.iter().any(Option::is_some) && settings.far_field_mib == self.settings.far_field_mib;
+        if !wants_far {
+            self.far_fields.fill(None);
+        } else if !has_far {
+            self.far_fields = per_surface(&self.scene, |surface| FarField::new(surface, &settings));
+        }
         self.settings = settings;
         Ok(())
     }
@@ -119,11 +132,11 @@ impl Renderer {
 
     /// Draws a frame and says what it took; `clock` gives milliseconds, since the library reads no clock of its own.
     pub fn render_timed(&mut self, clock: &(dyn Fn() -> f64 + Sync)) -> (Frame, Stats) {
-        let Self { scene, settings, fields, kernel, offsets, geometry, rasterizer } = self;
+        let Self { scene, settings, fields, far_fields, kernel, offsets, geometry, rasterizer } = self;
         let start = clock();
         geometry.project(scene, settings);
         let projected = clock();
-        let shader = QuadShader::new(scene, settings, fields, (kernel, offsets));
+        let shader = QuadShader::new(scene, settings, (fields, far_fields), (kernel, offsets));
         let shade_us = AtomicU64::new(0);
         let shade = |pair: &crate::raster::QuadPair| {
             let before = clock();
@@ -149,21 +162,19 @@ impl Renderer {
     }
 }
 
-/// One height field per distinct surface with relief.
-fn height_fields(scene: &Scene) -> Vec<Option<Arc<HeightField>>> {
-    let mut built: Vec<(Arc<Surface>, Arc<HeightField>)> = Vec::new();
-    let field_of = |surface: &Arc<Surface>| {
-        if let Some((_, field)) = built.iter().find(|(other, _)| Arc::ptr_eq(other, surface)) {
-            return field.clone();
+/// What is made of each material's surface, if that has relief: one per distinct surface.
+fn per_surface<T>(scene: &Scene, make: impl Fn(&Surface) -> Option<T>) -> Vec<Option<Arc<T>>> {
+    let mut made: Vec<(Arc<Surface>, Option<Arc<T>>)> = Vec::new();
+    let mut of = |surface: &Arc<Surface>| {
+        if let Some((_, table)) = made.iter().find(|(other, _)| Arc::ptr_eq(other, surface)) {
+            return table.clone();
         }
-        let field = Arc::new(HeightField::new(surface));
-        built.push((surface.clone(), field.clone()));
-        field
+        let table = make(surface).map(Arc::new);
+        made.push((surface.clone(), table.clone()));
+        table
     };
-    let mut field_of = field_of;
-    let with_relief =
-        |material: &crate::Material| material.surface.as_ref().filter(|surface| surface.relief_depth > 0.0).cloned();
-    scene.materials.iter().map(|material| with_relief(material).map(|surface| field_of(&surface))).collect()
+    let relief = |material: &Material| material.surface.clone().filter(|surface| surface.relief_depth > 0.0);
+    scene.materials.iter().map(|material| relief(material).and_then(|surface| of(&surface))).collect()
 }
 
 /// Draws one frame.

@@ -1,13 +1,13 @@
 //! The colour of two quads: view slope, hits, footprints, texels, light.
 
-use crate::filter::{self, Filtered, TexelSet, horizon, isotropic, parallax, truth};
+use crate::filter::{self, FarField, Filtered, TexelSet, horizon, isotropic, parallax, truth};
 use crate::raster::{LitPlanes, QuadPair};
 use crate::relief::{HeightField, displacement, march};
 use crate::scene::{Material, Scene};
 use crate::settings::{Derivatives, Filter, Formulas, Lighting, Settings};
 use crate::shade::{LocalLights, SurfacePoint};
 use crate::simd::PixelLanes;
-use crate::texture::Surface;
+use crate::texture::{FULL_F32, Surface};
 use glam::Vec3;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -17,6 +17,7 @@ pub(super) struct QuadShader<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
     fields: &'a [Option<Arc<HeightField>>],
+    far_fields: &'a [Option<Arc<FarField>>],
     kernel: &'a truth::Kernel,
     offsets: &'a [[f32; 2]],
     texels: [AtomicU64; 2],
@@ -34,10 +35,10 @@ impl<'a> QuadShader<'a> {
     pub(super) fn new(
         scene: &'a Scene,
         settings: &'a Settings,
-        fields: &'a [Option<Arc<HeightField>>],
+        (fields, far_fields): (&'a [Option<Arc<HeightField>>], &'a [Option<Arc<FarField>>]),
         (kernel, offsets): (&'a truth::Kernel, &'a [[f32; 2]]),
     ) -> Self {
-        Self { scene, settings, fields, kernel, offsets, texels: Default::default() }
+        Self { scene, settings, fields, far_fields, kernel, offsets, texels: Default::default() }
     }
 
     /// Texels tested and texels averaged so far.
@@ -107,7 +108,7 @@ impl<'a> QuadShader<'a> {
     }
 
     fn horizon(&self, ground: &Ground, reach: &[PixelLanes; 2]) -> [Vec3; 8] {
-        let Ground { pair, surface, material, .. } = *ground;
+        let Ground { pair, surface, material, field } = *ground;
         let none = [PixelLanes::ZERO; 2];
         let differences = filter::differences(&pair.uv, &none, (Derivatives::Flat, Formulas::Meant));
         let mut num_rows = 0;
@@ -115,7 +116,12 @@ impl<'a> QuadShader<'a> {
             let footprint = differences.footprint(&pair.uv, lane);
             let reach = reach.map(|lanes| lanes.as_array()[lane]);
             let lights = self.lights_at(pair, lane, pixel_center(pair, lane));
-            let (texel, rows) = horizon::visible_mean(surface, &footprint, reach, self.settings, lights.as_ref());
+            // The tables hold unlit colour.
+            let far = self.far_fields[pair.material].as_deref().filter(|_| lights.is_none() && field.is_some());
+            let (texel, rows) = match far {
+                Some(far) => horizon::near_or_far_mean(surface, far, &footprint, reach, self.settings),
+                None => horizon::visible_mean(surface, &footprint, reach, self.settings, lights.as_ref()),
+            };
             num_rows += rows;
             // Lambert is in the sums already; the highlight is that of the mean normal.
             let specular = lights.map_or(Vec3::ZERO, |lights| lights.specular(Vec3::from(texel.normal), material));
@@ -207,7 +213,7 @@ impl<'a> QuadShader<'a> {
 }
 
 fn albedo(ground: &Ground, texel: &Filtered) -> Vec3 {
-    Vec3::from(texel.color) * ground.material.diffuse * (ground.surface.color_scale / 65535.0)
+    Vec3::from(texel.color) * ground.material.diffuse * (ground.surface.color_scale / FULL_F32)
 }
 
 fn each_covered(pair: &QuadPair, mut color: impl FnMut(usize) -> Vec3) -> [Vec3; 8] {

@@ -29,7 +29,9 @@ impl Camera {
     #[must_use]
     pub fn framing(min: Vec3, max: Vec3) -> Self {
         let center = (min + max) * 0.5;
-        let radius = ((max - min).length() * 0.5).max(1e-6);
+        // Far from the origin f32 cannot tell an eye nearer than this from its target.
+        let least = (center.abs().max_element() * 1e-5).max(1e-6);
+        let radius = ((max - min).length() * 0.5).max(least);
         let direction = Vec3::new(0.45, 0.55, 1.0).normalize();
         let distance = radius / (0.5 * Self::default().fov_degrees.to_radians()).sin();
         Self { eye: center + direction * distance, target: center, near: radius * 1e-3, ..Self::default() }
@@ -69,5 +71,24 @@ impl Camera {
             return refuse("eye and target must differ, and up must not be parallel to the view");
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn framing_is_valid_and_holds_the_box_whatever_its_size_and_place() {
+        for scale in [1e-9, 1.0, 1e18_f32] {
+            for place in [Vec3::ZERO, Vec3::ONE, Vec3::splat(1e18) - scale] {
+                let (min, max) = (place - scale, place + scale);
+                let camera = Camera::framing(min, max);
+                camera.validate().unwrap_or_else(|error| panic!("{scale} at {place}: {error}"));
+                let forward = camera.axes()[2];
+                let nearest = (camera.target - camera.eye).dot(forward) - (max - min).length() * 0.5;
+                assert!(camera.near <= nearest, "{scale} at {place}: near {} beyond {nearest}", camera.near);
+            }
+        }
     }
 }

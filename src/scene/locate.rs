@@ -45,16 +45,16 @@ pub(super) fn bad_number(source: &dyn Source) -> Option<Error> {
         let text = lines.text();
         let (keyword, rest) = text.split_once(' ').unwrap_or_default();
         let numbers: Vec<f32> = rest.split_ascii_whitespace().map(|n| n.parse().unwrap_or(f32::NAN)).collect();
-        let is_bad = match keyword {
+        let is_good = match keyword {
             "v" => {
                 let w = numbers.get(3).copied().unwrap_or(1.0);
-                numbers.iter().take(3).any(|x| !((x / w).abs() <= MAX_POSITION))
+                numbers.iter().take(3).all(|x| (x / w).abs() <= MAX_POSITION)
             }
-            "vt" => numbers.iter().take(2).any(|x| !(x.abs() <= MAX_REPEATS)),
-            "vn" => numbers.iter().take(3).any(|x| !x.is_finite()),
-            _ => false,
+            "vt" => numbers.iter().take(2).all(|x| x.abs() <= MAX_REPEATS),
+            "vn" => numbers.iter().take(3).all(|x| x.is_finite()),
+            _ => true,
         };
-        if is_bad {
+        if !is_good {
             return Some(lines.place().refuse(format!("'{}' is not finite or too large", text.trim())));
         }
     }

@@ -4,7 +4,7 @@
 //! triangles around it by area, and the unit normal. Mirrored texture coordinates keep their own handedness; a
 //! triangle without area, in space or in the texture, adds nothing to the average.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// Triangles of one material.
 #[derive(Clone, Debug, Default)]
@@ -37,25 +37,26 @@ impl Mesh {
         mesh
     }
 
-    fn corners(&self, triangle: [u32; 3]) -> [Vec3; 3] {
-        triangle.map(|i| self.positions[i as usize])
+    /// Corners in f64: products of the largest and smallest positions allowed leave the range of f32.
+    fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
+        triangle.map(|i| self.positions[i as usize].as_dvec3())
     }
 
     fn area_weighted_normals(&self) -> Vec<Vec3> {
-        let mut sums = vec![Vec3::ZERO; self.positions.len()];
+        let mut sums = vec![DVec3::ZERO; self.positions.len()];
         for &triangle in &self.triangles {
             let [a, b, c] = self.corners(triangle);
             let twice_area = (b - a).cross(c - a);
             triangle.iter().for_each(|&i| sums[i as usize] += twice_area);
         }
-        sums.into_iter().map(|sum| sum.try_normalize().unwrap_or(Vec3::Y)).collect()
+        sums.into_iter().map(|sum| sum.try_normalize().map_or(Vec3::Y, |n| n.as_vec3())).collect()
     }
 
     fn area_weighted_tangents(&self) -> Vec<[Vec3; 2]> {
-        let mut sums = vec![([Vec3::ZERO; 2], 0.0_f32); self.tex_coords.len()];
+        let mut sums = vec![([DVec3::ZERO; 2], 0.0_f64); self.tex_coords.len()];
         for &triangle in self.triangles.iter().filter(|_| !self.tex_coords.is_empty()) {
             let [a, b, c] = self.corners(triangle);
-            let [ta, tb, tc] = triangle.map(|i| self.tex_coords[i as usize]);
+            let [ta, tb, tc] = triangle.map(|i| self.tex_coords[i as usize].as_dvec2());
             let (e1, e2, t1, t2) = (b - a, c - a, tb - ta, tc - ta);
             let (area_uv, area) = (t1.perp_dot(t2), e1.cross(e2).length());
             let frame = [(e1 * t2.y - e2 * t1.y) / area_uv, (e2 * t1.x - e1 * t2.x) / area_uv];
@@ -85,11 +86,15 @@ impl Mesh {
         if let Some(triangle) = self.triangles.iter().find(|t| t.iter().any(|&i| i as usize >= num)) {
             return Err(format!("triangle {triangle:?} names a vertex of {num} that does not exist"));
         }
-        let bounded = |v: &Vec3| v.abs().max_element() <= 1e18;
-        if !self.positions.iter().all(bounded) || !self.normals.iter().all(bounded) {
+        // Compared by component: the largest component of a vector with NaN need not be NaN.
+        let is_bounded = |v: &Vec3| v.abs().cmple(Vec3::splat(1e18)).all();
+        if !self.positions.iter().all(is_bounded) || !self.normals.iter().all(is_bounded) {
             return Err("positions and normals must be finite and within 1e18".into());
         }
-        if !self.tex_coords.iter().all(|t| t.abs().max_element() <= 1e6) {
+        if !self.tangents.iter().flatten().all(|axis| axis.is_finite()) {
+            return Err("tangents must be finite".into());
+        }
+        if !self.tex_coords.iter().all(|t| t.abs().cmple(Vec2::splat(1e6)).all()) {
             return Err("texture coordinates must be finite and within 1e6 repeats".into());
         }
         Ok(())
@@ -97,13 +102,90 @@ impl Mesh {
 }
 
 /// The area-weighted mean of tangents, or any frame around the normal where the texture gives none.
-fn average_frame([u, v]: [Vec3; 2], weight: f32, normal: Vec3) -> [Vec3; 2] {
+fn average_frame([u, v]: [DVec3; 2], weight: f64, normal: Vec3) -> [Vec3; 2] {
     let (u, v) = (u / weight, v / weight);
     let area = u.cross(v).length();
-    if area.is_finite() && area > 1e-6 * u.length() * v.length() && area > 1e-30 {
-        [u, v]
+    let axes = [u.as_vec3(), v.as_vec3()];
+    // Axes this close to parallel come from rounding, not from the mesh.
+    if area > 1e-6 * u.length() * v.length() && axes.iter().all(|axis| axis.is_finite() && *axis != Vec3::ZERO) {
+        axes
     } else {
         let (u, v) = normal.normalize_or(Vec3::Y).any_orthonormal_pair();
         [u, v]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [Vec3; 4] = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+
+    fn square(tex_coords: [Vec2; 4], triangles: &[[u32; 3]]) -> Mesh {
+        Mesh::new(SQUARE.to_vec(), tex_coords.to_vec(), Vec::new(), triangles.to_vec())
+    }
+
+    #[test]
+    fn tangents_are_world_units_per_repeat() {
+        let coords = SQUARE.map(|p| Vec2::new(p.x * 4.0, p.y * 0.5));
+        let mesh = square(coords, &[[0, 1, 2], [0, 2, 3]]);
+        assert!(mesh.tangents.iter().all(|t| *t == [Vec3::X * 0.25, Vec3::Y * 2.0]));
+    }
+
+    #[test]
+    fn mirrored_coordinates_keep_their_handedness() {
+        let mesh = square(SQUARE.map(|p| Vec2::new(-p.x, p.y)), &[[0, 1, 2], [0, 2, 3]]);
+        assert!(mesh.tangents.iter().all(|t| *t == [Vec3::NEG_X, Vec3::Y]));
+    }
+
+    #[test]
+    fn triangles_without_area_add_nothing() {
+        let good = [[0, 1, 2], [0, 2, 3]];
+        let mesh = square(SQUARE.map(|p| p.truncate()), &[good[0], good[1], [0, 0, 1], [2, 2, 2]]);
+        assert!(mesh.tangents.iter().all(|t| *t == [Vec3::X, Vec3::Y]));
+        assert!(mesh.normals.iter().all(|n| *n == Vec3::Z));
+        let mut flat = SQUARE.map(|p| p.truncate());
+        flat[3] = Vec2::ZERO;
+        let mesh = square(flat, &good);
+        assert_eq!(mesh.tangents[1], [Vec3::X, Vec3::Y], "the second triangle has no area in the texture");
+    }
+
+    #[test]
+    fn where_the_texture_gives_no_frame_any_finite_one_serves() {
+        for (scale, coords) in [(1.0, [Vec2::ZERO; 4]), (0.0, [Vec2::ONE; 4]), (-1.0, [Vec2::ZERO; 4])] {
+            let positions = SQUARE.map(|p| p * scale).to_vec();
+            let mesh = Mesh::new(positions, coords.to_vec(), Vec::new(), vec![[0, 1, 2], [0, 2, 3]]);
+            for ([u, v], n) in mesh.tangents.iter().zip(&mesh.normals) {
+                assert!(u.is_finite() && v.is_finite() && n.is_normalized(), "scale {scale}");
+                assert!(u.normalize().cross(v.normalize()).dot(*n) > 0.9, "scale {scale}: {u} {v} {n}");
+            }
+        }
+    }
+
+    #[test]
+    fn frames_of_huge_and_tiny_meshes_are_exact() {
+        for scale in [1e18, 1e-18] {
+            let (positions, coords) = (SQUARE.map(|p| p * scale).to_vec(), SQUARE.map(|p| p.truncate()).to_vec());
+            let mesh = Mesh::new(positions, coords, Vec::new(), vec![[0, 1, 2], [0, 2, 3]]);
+            assert!(mesh.tangents.iter().all(|t| *t == [Vec3::X * scale, Vec3::Y * scale]), "scale {scale}");
+            assert!(mesh.normals.iter().all(|n| *n == Vec3::Z), "scale {scale}");
+        }
+    }
+
+    #[test]
+    fn wrong_lengths_and_indices_are_refused() {
+        let valid = square(SQUARE.map(|p| p.truncate()), &[[0, 1, 2]]);
+        assert!(valid.validate(1).is_ok());
+        assert!(valid.validate(0).is_err());
+        let with = |change: fn(&mut Mesh)| {
+            let mut mesh = valid.clone();
+            change(&mut mesh);
+            mesh.validate(1)
+        };
+        assert!(with(|m| m.triangles[0][1] = 4).is_err());
+        assert!(with(|m| m.normals.clear()).is_err());
+        assert!(with(|m| m.tangents.clear()).is_err());
+        assert!(with(|m| m.positions[0].x = f32::NAN).is_err());
+        assert!(with(|m| m.tex_coords[0].y = f32::INFINITY).is_err());
     }
 }

@@ -14,8 +14,10 @@ mod memory;
 mod mesh;
 mod models;
 mod mtl;
+mod mtl_lines;
 mod obj;
 mod plan;
+mod samples;
 mod surfaces;
 mod texture_line;
 

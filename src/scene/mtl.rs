@@ -1,14 +1,11 @@
 //! MTL files, through tobj, to materials whose texture lines are taken apart.
-//!
-//! Keywords are read in any spelling of upper and lower case and handed to tobj in its own; what tobj would panic at or
-//! refuse a whole file for (`Kd` with one number, an empty `map_Kd`) is put right or refused with its line before.
 
 use super::files::{self, Folder};
-use super::lines::{Clean, CleanLines, Place};
+use super::lines::{CleanLines, Place};
+use super::mtl_lines::{LineNumbers, MtlLines};
 use super::texture_line::TextureLine;
 use crate::error::{Error, Result};
 use std::collections::{HashMap, HashSet};
-use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -122,7 +119,7 @@ impl MtlFiles {
 
     /// Reads the text of one MTL file.
     pub(super) fn read_text(&mut self, text: impl BufRead, path: &Path) -> Result<TobjMaterials> {
-        let cleaner = MtlLines { lines: Vec::new(), warnings: Vec::new() };
+        let cleaner = MtlLines::default();
         let mut lines = CleanLines::new(text, path, cleaner);
         let read = super::contain::contain(|| tobj::load_mtl_buf(&mut lines));
         if let Some(failure) = lines.failure.take() {
@@ -185,85 +182,5 @@ impl MtlFiles {
             self.warnings
                 .push(at.remark(format_args!("material '{name}' is not defined before; plain colour is drawn")));
         }
-    }
-}
-
-/// The line of each keyword of a material.
-type LineNumbers = HashMap<&'static str, usize>;
-
-/// Cleans the lines of an MTL file, see the module's head.
-struct MtlLines {
-    /// One map a material.
-    lines: Vec<LineNumbers>,
-    warnings: Vec<String>,
-}
-
-/// tobj's spelling of the keywords that matter here.
-fn spelled(keyword: &str) -> Option<&'static str> {
-    Some(match keyword.to_ascii_lowercase().as_str() {
-        "newmtl" => "newmtl",
-        "kd" => "Kd",
-        "ks" => "Ks",
-        "ns" => "Ns",
-        "map_kd" => "map_Kd",
-        "bump" | "map_bump" => "map_Bump",
-        "disp" | "map_disp" => "disp",
-        "norm" | "map_kn" => "norm",
-        _ => return None,
-    })
-}
-
-impl Clean for MtlLines {
-    fn clean(&mut self, text: &str, at: Place<'_>, out: &mut String) -> Result<()> {
-        let (word, rest) = text.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((text, ""));
-        let Some(keyword) = spelled(word) else {
-            return Ok(());
-        };
-        let rest = rest.trim();
-        if keyword == "newmtl" {
-            if rest.is_empty() {
-                return Err(at.refuse("newmtl needs a name"));
-            }
-            self.lines.push(LineNumbers::new());
-        }
-        let Some(lines) = self.lines.last_mut() else {
-            return Err(at.refuse(format!("{word} stands before the first newmtl")));
-        };
-        lines.insert(keyword, at.line);
-        match keyword {
-            "Kd" | "Ks" if rest.starts_with("spectral") || rest.starts_with("xyz") => {
-                self.warnings.push(at.remark(format_args!("{word} {rest} is not supported")));
-            }
-            "Kd" | "Ks" => {
-                let [r, g, b] = color(rest).map_err(|reason| at.refuse(format!("{word}: {reason}")))?;
-                let _ = writeln!(out, "{keyword} {r} {g} {b}");
-            }
-            "Ns" => {
-                let exponent = number(rest).map_err(|reason| at.refuse(format!("{word}: {reason}")))?;
-                let _ = writeln!(out, "{keyword} {exponent}");
-            }
-            _ if rest.is_empty() => self.warnings.push(at.remark(format_args!("{word} names no file"))),
-            _ => _ = writeln!(out, "{keyword} {rest}"),
-        }
-        Ok(())
-    }
-}
-
-fn number(text: &str) -> std::result::Result<f32, String> {
-    let word = text.split_whitespace().next().unwrap_or_default();
-    match word.parse::<f32>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("'{word}' is not a finite number")),
-    }
-}
-
-/// Three numbers, or one for all three as the format allows.
-fn color(text: &str) -> std::result::Result<[f32; 3], String> {
-    let words = text.split('#').next().unwrap_or_default();
-    let numbers = words.split_whitespace().take(3).map(number).collect::<std::result::Result<Vec<_>, _>>()?;
-    match numbers[..] {
-        [r, g, b] => Ok([r, g, b]),
-        [r] => Ok([r; 3]),
-        _ => Err("three numbers are needed".into()),
     }
 }

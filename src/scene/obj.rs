@@ -137,23 +137,29 @@ impl<'a> ObjLines<'a> {
         if self.num_triangles > self.max_triangles {
             return Err(at.refuse(format!("more than {} triangles (max_triangles)", self.max_triangles)));
         }
-        let corners =
-            Corners { have_tex_coords: scan.num_tex_coords == scan.num, have_normals: scan.num_normals == scan.num };
-        if corners.have_tex_coords && self.first_with_tex_coords == 0 {
-            self.first_with_tex_coords = at.line;
-        }
-        if corners.have_normals && self.first_with_normals == 0 {
-            self.first_with_normals = at.line;
-        }
+        let corners = self.note(&scan, at.line);
         if self.corners.replace(corners).is_some_and(|before| before != corners) {
             let _ = writeln!(out, "o {}", self.name);
         }
         if [scan.num_tex_coords, scan.num_normals].iter().all(|&num| num == 0 || num == scan.num) {
-            (out.push_str("f "), out.push_str(text), out.push('\n'));
+            let _ = writeln!(out, "f {text}");
         } else {
             write_face(text, corners, out);
         }
         Ok(())
+    }
+
+    /// What all corners of a face name; keeps the first line that names it.
+    fn note(&mut self, scan: &Scan, line: usize) -> Corners {
+        let corners =
+            Corners { have_tex_coords: scan.num_tex_coords == scan.num, have_normals: scan.num_normals == scan.num };
+        if corners.have_tex_coords && self.first_with_tex_coords == 0 {
+            self.first_with_tex_coords = line;
+        }
+        if corners.have_normals && self.first_with_normals == 0 {
+            self.first_with_normals = line;
+        }
+        corners
     }
 
     /// Counts corners and what they name; refuses 0 and what lies before the first of a list.
@@ -211,20 +217,28 @@ fn write_face(text: &str, corners: Corners, out: &mut String) {
     out.push('\n');
 }
 
+/// Writes a line of numbers; a position with a colour behind it loses the colour.
+fn write_numbers(keyword: &str, numbers: &str, out: &mut String) {
+    out.push_str(keyword);
+    if keyword == "v" && numbers.split_ascii_whitespace().nth(4).is_some() {
+        for number in numbers.split_ascii_whitespace().take(3) {
+            out.push(' ');
+            out.push_str(number);
+        }
+    } else {
+        out.push(' ');
+        out.push_str(numbers);
+    }
+    out.push('\n');
+}
+
 impl Clean for ObjLines<'_> {
     fn clean(&mut self, text: &str, at: Place<'_>, out: &mut String) -> Result<()> {
         let (keyword, rest) = text.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((text, ""));
         match keyword {
             "v" | "vt" | "vn" => {
                 self.count(keyword, at)?;
-                let numbers = rest.split('#').next().unwrap_or_default();
-                (out.push_str(keyword), out.push(' '));
-                if keyword == "v" && numbers.split_ascii_whitespace().nth(4).is_some() {
-                    numbers.split_ascii_whitespace().take(3).for_each(|n| (out.push_str(n), out.push(' ')).1);
-                } else {
-                    out.push_str(numbers);
-                }
-                out.push('\n');
+                write_numbers(keyword, rest.split('#').next().unwrap_or_default(), out);
             }
             "f" => self.face(rest.split('#').next().unwrap_or_default().trim(), at, out)?,
             "o" | "g" => {

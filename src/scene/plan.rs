@@ -35,6 +35,13 @@ pub(super) enum Kind {
     Normal { strength: u32, is_green_down: bool },
 }
 
+impl Kind {
+    /// Bytes of a texel once it is read.
+    pub(super) fn num_bytes(&self) -> u64 {
+        if matches!(self, Self::Height { .. }) { 2 } else { 6 }
+    }
+}
+
 /// What one surface is made from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Plan {
@@ -54,6 +61,11 @@ impl Plan {
 
     pub(super) fn wrap(&self) -> Wrap {
         [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp][usize::from(self.wrap)]
+    }
+
+    /// Whether there is anything to take normals from.
+    pub(super) fn has_relief(&self) -> bool {
+        self.height.is_some() || self.normal.is_some()
     }
 
     pub(super) fn is_mirrored(&self) -> bool {
@@ -117,9 +129,13 @@ impl<'a> Planner<'a> {
 
     fn look_at_bumps(&mut self, materials: &[&MtlMaterial]) -> Result<()> {
         let mut paths = BTreeSet::new();
-        for bump in materials.iter().filter_map(|material| material.bump.as_ref()) {
-            if bump.texture.channel.is_none() && !(self.replacements.height.is_some() && !self.wants_normals()) {
-                paths.extend(self.folder.resolve(&bump.texture.name, &bump.path).ok().flatten());
+        for material in materials {
+            let Some(bump) = material.bump.as_ref().filter(|bump| bump.texture.channel.is_none()) else { continue };
+            let find = |map: &TextureRef| self.folder.resolve(&map.texture.name, &map.path).ok().flatten();
+            let has_height = self.replacements.height.is_some() || material.height.as_ref().and_then(find).is_some();
+            // Where both height and normals are settled without it, the image need not be read.
+            if !has_height || self.wants_normals() {
+                paths.extend(find(bump));
             }
         }
         let paths: Vec<_> = paths.into_iter().collect();

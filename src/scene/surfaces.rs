@@ -3,9 +3,10 @@
 //! Input: a [`Plan`] for every material. Every image file is decoded once, in parallel, and every different plan becomes
 //! one [`Surface`]. What all of that needs is estimated from the heads of the files before any is decoded.
 
-use super::decode::{self, ImageInfo, ImageLimits, Samples};
+use super::decode::{self, ImageInfo, ImageLimits};
 use super::load::LoadOptions;
 use super::plan::{Kind, Map, Plan};
+use super::samples::Samples;
 use crate::error::{Error, Result};
 use crate::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps};
 use rayon::prelude::*;
@@ -16,10 +17,9 @@ use std::sync::Arc;
 /// Bytes of a texel in all levels, each also transposed: two words, a third for normals, 4/3 for the smaller levels.
 const STORED_BYTES: u64 = 22;
 const STORED_BYTES_WITH_NORMALS: u64 = 32;
-/// Bytes of a texel while its surface is built: unpacked words and their transposed copy.
-const BUILD_BYTES: u64 = 24;
-/// Bytes of a texel of a decoded map: three 16-bit numbers at most.
-const MAP_BYTES: u64 = 6;
+/// Bytes of a texel while its surface is built, beyond what is stored in the end: measured at the peak, when all three
+/// maps and the unpacked words of the finest level are alive.
+const BUILD_BYTES: u64 = 8;
 
 enum MapImage {
     Color(ColorImage),
@@ -75,17 +75,21 @@ fn kinds_by_file(plans: &BTreeSet<Plan>) -> BTreeMap<&Path, BTreeSet<&Kind>> {
 /// Refuses a scene whose textures would take too much memory, before any is decoded.
 fn check_memory(plans: &BTreeSet<Plan>, infos: &BTreeMap<&Path, ImageInfo>, options: &LoadOptions) -> Result<()> {
     let num_texels = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
-    let images: u64 = infos.values().map(|info| info.num_bytes.saturating_add(num_texels(info.size) * MAP_BYTES)).sum();
+    let info = |map: &Map| infos.get(map.path.as_path());
+    let decoded: u64 = infos.values().map(|info| info.num_bytes).sum();
+    let maps: BTreeSet<&Map> = plans.iter().flat_map(Plan::maps).collect();
+    let converted: u64 = maps.iter().filter_map(|map| Some(num_texels(info(map)?.size) * map.kind.num_bytes())).sum();
     let (mut stored, mut largest) = (0, 0);
-    let per_texel = if options.keep_normals { STORED_BYTES_WITH_NORMALS } else { STORED_BYTES };
     for plan in plans {
-        let sizes = plan.maps().filter_map(|map| infos.get(map.path.as_path())).map(|info| info.size);
+        let sizes = plan.maps().filter_map(info).map(|info| info.size);
+        let has_normals = options.keep_normals && plan.has_relief();
+        let per_texel = if has_normals { STORED_BYTES_WITH_NORMALS } else { STORED_BYTES };
         let size = sizes.fold([1, 1], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
         let num = num_texels(size) * if plan.is_mirrored() { 4 } else { 1 };
         stored += num * per_texel;
         largest = largest.max(num * BUILD_BYTES);
     }
-    let mib = (images + stored + largest) >> 20;
+    let mib = (decoded + converted + stored + largest) >> 20;
     if mib > u64::from(options.max_image_mib) {
         let reason = format!("the scene's textures need about {mib} MiB, more than {}", options.max_image_mib);
         return Err(Error::setting("max_image_mib", reason));

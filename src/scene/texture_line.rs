@@ -78,25 +78,17 @@ impl TextureLine {
         let needs = |num: usize| {
             if numbers.len() < num { Err(format!("option {option} needs {num} number(s)")) } else { Ok(()) }
         };
-        let mut num_words = numbers.len() + 1;
+        let value = words.get(1).copied().unwrap_or_default();
         match option.as_str() {
             "-bm" => needs(1).map(|()| self.bump = Some(numbers[0]))?,
             "-s" => needs(1).map(|()| self.scale = [numbers[0], *numbers.get(1).unwrap_or(&1.0)])?,
             "-o" => needs(1).map(|()| self.offset = [numbers[0], *numbers.get(1).unwrap_or(&0.0)])?,
             "-mm" => needs(2).map(|()| self.range = [numbers[0], numbers[1]])?,
-            "-clamp" => {
-                self.is_clamped = words.get(1).is_some_and(|w| w.eq_ignore_ascii_case("on"));
-                num_words += usize::from(words.get(1).is_some_and(|w| is_switch(w)));
-            }
-            "-imfchan" => {
-                self.channel = Some(channel(words.get(1).copied().unwrap_or_default())?);
-                num_words += 1;
-            }
-            _ => {
-                num_words += usize::from(takes_word(&option, words.get(1).copied().unwrap_or_default()));
-                self.unsupported.push(option);
-            }
+            "-clamp" => self.is_clamped = value.eq_ignore_ascii_case("on"),
+            "-imfchan" => self.channel = Some(channel(value)?),
+            _ => self.unsupported.push(option.clone()),
         }
+        let num_words = if takes_word(&option, value) { 2 } else { numbers.len() + 1 };
         Ok(num_words.min(words.len()))
     }
 }

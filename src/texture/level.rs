@@ -1,11 +1,18 @@
 //! One level of a pyramid: packed texels in an order made for row sweeps.
 //!
-//! A texel is two words, `red | green << 16` and `blue | height << 16`, each 16 bits of linear light or height, and,
+//! A texel is two words, `red | green << 16` and `blue | height << 16`, each 0 to [`FULL`] in linear light or height, and,
 //! where normals are kept, a third word (see [`pack_normal`]). A row stores its words plane by plane, with an apron of
 //! [`APRON`] texels on both sides, so that any run of that many neighbouring texels is one contiguous load per plane.
 
 use super::Wrap;
 use crate::simd::u32x8;
+
+/// What a packed colour's `color_scale`, or a height on the polygon, is stored as. Fifteen of the sixteen bits: then the
+/// difference of two texels is a signed 16-bit number, and lanes interpolate two channels of a texel at once.
+pub const FULL: u32 = 32767;
+
+/// [`FULL`] as a number.
+pub(crate) const FULL_F32: f32 = FULL as f32;
 
 /// Texels that a row repeats beyond both of its ends: the widest run of lanes that is loaded at once.
 pub(crate) const APRON: usize = 16;
@@ -48,6 +55,7 @@ impl Level {
     }
 
     /// The words of a row of the endless pattern, all planes.
+    #[inline(always)]
     pub(crate) fn row(&self, y: i32) -> &[u32] {
         let pitch = (self.width + 2 * APRON) * self.num_planes;
         let start = wrap_index(self.wrap, y, self.height) * pitch;
@@ -55,6 +63,7 @@ impl Level {
     }
 
     /// Where a run of up to [`APRON`] texels that begins at column `x` of the endless pattern starts within a plane.
+    #[inline(always)]
     pub(crate) fn run_start(&self, x: i32) -> usize {
         match self.wrap {
             Wrap::Clamp => (x.clamp(-(APRON as i32), self.width as i32) + APRON as i32) as usize,
@@ -68,6 +77,7 @@ impl Level {
     }
 
     /// Eight neighbouring words of a row, from `start`: [`Self::run_start`] plus a multiple of [`Self::stride`].
+    #[inline(always)]
     pub(crate) fn run(row: &[u32], start: usize) -> u32x8 {
         let lanes: &[u32; 8] = row[start..start + 8].try_into().expect("a slice of eight");
         u32x8::new(*lanes)
@@ -81,7 +91,7 @@ impl Level {
     /// The height, 0 to 1, at a column and row of the endless pattern.
     #[must_use]
     pub fn height_at(&self, x: i32, y: i32) -> f32 {
-        (self.packed(x, y)[1] >> 16) as f32 * (1.0 / 65535.0)
+        (self.packed(x, y)[1] >> 16) as f32 * (1.0 / FULL_F32)
     }
 
     /// Bytes that the level takes.
@@ -91,10 +101,13 @@ impl Level {
 }
 
 /// The stored index of place `i` of an endless row of period `n`. A mirrored pattern is stored whole, so it repeats.
+#[inline(always)]
 pub(crate) fn wrap_index(wrap: Wrap, i: i32, n: usize) -> usize {
     let n = n as i32;
     match wrap {
         Wrap::Clamp => i.clamp(0, n - 1) as usize,
+        // A power of two, the usual size, needs no division.
+        Wrap::Repeat | Wrap::Mirror if n & (n - 1) == 0 => (i & (n - 1)) as usize,
         Wrap::Repeat | Wrap::Mirror => i.rem_euclid(n) as usize,
     }
 }

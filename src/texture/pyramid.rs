@@ -4,7 +4,7 @@
 //! before, with fractional weights where the size is odd, so any size works and a repeating pattern still repeats.
 
 use super::Wrap;
-use super::level::{Level, PackedTexel, pack_normal, unpack_normal, wrap_index};
+use super::level::{FULL, FULL_F32, Level, PackedTexel, pack_normal, unpack_normal, wrap_index};
 use rayon::prelude::*;
 
 /// All levels, and all levels transposed.
@@ -42,7 +42,7 @@ fn transpose(texels: &[PackedTexel], [width, height]: [usize; 2]) -> Vec<PackedT
 }
 
 /// Source places and weights (sum 1) of one destination texel along one axis.
-fn box_taps(i: usize, num_from: usize, num_to: usize) -> Vec<(usize, f32)> {
+pub(crate) fn box_taps(i: usize, num_from: usize, num_to: usize) -> Vec<(usize, f32)> {
     let ratio = num_from as f64 / num_to as f64;
     let (start, end) = (i as f64 * ratio, (i + 1) as f64 * ratio);
     (start as usize..(end.ceil() as usize).min(num_from))
@@ -70,21 +70,21 @@ fn halve(texels: &[PackedTexel], [w, h]: [usize; 2], [to_w, to_h]: [usize; 2]) -
     halved
 }
 
-/// Red, green, blue, height (each 0 to 65535) and the normal.
+/// Red, green, blue, height (each 0 to [`FULL`]) and the normal.
 fn unpack([a, b, n]: PackedTexel) -> [f32; 7] {
     let [x, y, z] = unpack_normal(n);
     [(a & 0xffff) as f32, (a >> 16) as f32, (b & 0xffff) as f32, (b >> 16) as f32, x, y, z]
 }
 
 fn pack([r, g, b, h, x, y, z]: [f32; 7]) -> PackedTexel {
-    let [r, g, b, h] = [r, g, b, h].map(|c| ((c + 0.5) as u32).min(65535));
+    let [r, g, b, h] = [r, g, b, h].map(|c| ((c + 0.5) as u32).min(FULL));
     [r | g << 16, b | h << 16, pack_normal([x, y, z])]
 }
 
 /// Writes the unit normals of the height field, by central differences, into the texels.
 pub(super) fn normals_from_heights(texels: &mut [PackedTexel], [w, h]: [usize; 2], wrap: Wrap, relief_depth: f32) {
     let fold = |i: i32, n: usize| wrap_index(if wrap == Wrap::Mirror { Wrap::Clamp } else { wrap }, i, n);
-    let heights: Vec<f32> = texels.iter().map(|texel| (texel[1] >> 16) as f32 * (relief_depth / 65535.0)).collect();
+    let heights: Vec<f32> = texels.iter().map(|texel| (texel[1] >> 16) as f32 * (relief_depth / FULL_F32)).collect();
     texels.par_chunks_exact_mut(w).enumerate().for_each(|(y, row)| {
         let (below, above) = (fold(y as i32 - 1, h) * w, fold(y as i32 + 1, h) * w);
         for (x, texel) in row.iter_mut().enumerate() {

@@ -1,6 +1,6 @@
 //! The texels of a material: colour, height and normals of one size, packed, with every mip level and a transposed copy.
 
-use super::level::{Level, PackedTexel, pack_normal};
+use super::level::{FULL, Level, PackedTexel, pack_normal};
 use super::{ColorImage, HeightImage, NormalImage, pyramid, resample};
 use crate::error::{Error, Result};
 
@@ -50,7 +50,7 @@ pub struct Surface {
     pub wrap: Wrap,
     /// Depth of the deepest relief below the polygon in texture repeats; 0 where the surface is flat.
     pub relief_depth: f32,
-    /// The brightest colour that a texel can hold; stored 65535.
+    /// The brightest colour that a texel can hold; stored as [`FULL`](super::FULL).
     pub color_scale: f32,
     /// Whether the third word of a texel holds a normal.
     pub has_normals: bool,
@@ -69,15 +69,16 @@ impl Surface {
         let has_normals = maps.keep_normals && (maps.normal.is_some() || !is_flat);
         let SurfaceMaps { albedo, height: heights, normal, wrap, relief_depth, .. } = maps;
         let color_scale = albedo.as_ref().map_or(1.0, |image| image.scale);
-        let mut texels = vec![[0xffff_ffff, 0xffff_ffff, 0] as PackedTexel; width * height];
+        let mut texels = vec![[FULL | FULL << 16, FULL | FULL << 16, 0] as PackedTexel; width * height];
         if let Some(image) = albedo {
-            resample::fill(&mut texels, [width, height], wrap, &image, |texel, [r, g, b]| {
+            resample::fill(&mut texels, [width, height], wrap, &image, |texel, color| {
+                let [r, g, b] = color.map(stored);
                 *texel = [r | g << 16, b | texel[1] & 0xffff_0000, texel[2]];
             });
         }
         if let Some(image) = heights.filter(|_| !is_flat) {
             resample::fill(&mut texels, [width, height], wrap, &image, |texel, [h, ..]| {
-                texel[1] = texel[1] & 0xffff | h << 16;
+                texel[1] = texel[1] & 0xffff | stored(h) << 16;
             });
         }
         if let Some(image) = normal.as_ref().filter(|_| has_normals) {
@@ -114,6 +115,11 @@ impl Surface {
     pub fn num_bytes(&self) -> usize {
         self.levels.iter().chain(&self.transposed).map(Level::num_bytes).sum()
     }
+}
+
+/// A number from 0 to 65535 as it is packed.
+fn stored(c: u32) -> u32 {
+    (c * FULL + 32767) / 65535
 }
 
 fn common_size(maps: &SurfaceMaps) -> Result<[usize; 2]> {

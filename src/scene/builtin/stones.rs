@@ -111,9 +111,10 @@ impl<'a> Quarry<'a> {
         let [x, y] = uv.map(|x| (x * SPECKLES) as i32);
         let speckle = unit(x, y, self.style.seed);
         // Tops are worn light, shoulders stay dark, and joints lie in their own shade.
-        let wear = mix(0.62, 1.06, step(0.1, 0.95, inside));
-        let tone = stone.tone * (0.74 + 0.32 * grain + 0.2 * lumps) * (0.8 + 0.4 * stains) * wear;
-        let tone = tone * if speckle > 0.93 { 1.25 } else { 0.9 + 0.15 * speckle };
+        let wear = mix(0.52, 1.12, step(0.1, 1.0, inside));
+        let tone = stone.tone * (0.52 + 0.62 * grain + 0.34 * lumps) * (0.8 + 0.4 * stains) * wear;
+        let crystal = if speckle > 0.94 { 1.35 } else { 0.84 + 0.26 * speckle };
+        let tone = tone * crystal;
         let wet = mix(0.6, 1.3, lumps) * mix(0.7, 1.2, stains);
         let in_stone = step(0.0, 0.22, inside);
         std::array::from_fn(|c| mix(self.style.mortar[c] * wet, stone.tint[c] * tone, in_stone))

@@ -1,0 +1,111 @@
+//! One table: the image seen in one direction, with its coarser levels, in one word a texel.
+
+use crate::simd::{TexelLanes, as_signed, u32x8};
+
+/// Texels that a row repeats beyond its end, so that any eight neighbours are one load.
+const APRON: usize = 8;
+
+/// The image seen in one direction.
+#[derive(Clone, Debug)]
+pub(super) struct FarImage {
+    levels: Vec<FarLevel>,
+}
+
+#[derive(Clone, Debug)]
+struct FarLevel {
+    width: usize,
+    height: usize,
+    words: Vec<u32>,
+}
+
+impl FarImage {
+    /// Words of a level of that size.
+    pub(super) fn num_words(width: usize, height: usize) -> usize {
+        (width + APRON) * height
+    }
+
+    pub(super) fn num_bytes(&self) -> usize {
+        self.levels.iter().map(|level| level.words.len() * 4).sum()
+    }
+
+    /// An image and its coarser levels from linear colours (0 to 1 of the surface's scale), row by row.
+    pub(super) fn new(size: [usize; 2], colors: Vec<[f32; 3]>) -> Self {
+        let (mut size, mut colors) = (size, colors);
+        let mut levels = Vec::new();
+        loop {
+            levels.push(FarLevel::new(size, &colors));
+            if size == [1, 1] {
+                return Self { levels };
+            }
+            (size, colors) = halve(size, &colors);
+        }
+    }
+
+    /// The colours of the finest level, 0 to 1 of the surface's scale, row by row.
+    pub(super) fn colors(&self) -> Vec<[f32; 3]> {
+        let FarLevel { width, height, words } = &self.levels[0];
+        let decoded = |word: u32| {
+            let roots = [(word & 2047, 2047.0), (word >> 11 & 2047, 2047.0), (word >> 22, 1023.0)];
+            roots.map(|(root, most)| (root as f32 / most) * (root as f32 / most))
+        };
+        let rows = words.chunks_exact(width + APRON).take(*height);
+        rows.flat_map(|row| row[..*width].iter().map(|&word| decoded(word))).collect()
+    }
+
+    /// A row of a level of the endless pattern.
+    pub(super) fn row(&self, level: usize, y: i32) -> &[u32] {
+        let FarLevel { width, height, words } = &self.levels[level];
+        let start = y.rem_euclid(*height as i32) as usize * (width + APRON);
+        &words[start..start + width + APRON]
+    }
+
+    /// Width of a level.
+    pub(super) fn width(&self, level: usize) -> usize {
+        self.levels[level].width
+    }
+}
+
+impl FarLevel {
+    fn new([width, height]: [usize; 2], colors: &[[f32; 3]]) -> Self {
+        let row = |y: usize| (0..width + APRON).map(move |x| encode(colors[y * width + x % width]));
+        Self { width, height, words: (0..height).flat_map(row).collect() }
+    }
+}
+
+fn encode(color: [f32; 3]) -> u32 {
+    let [r, g, b] = color.map(|c| c.clamp(0.0, 1.0).sqrt());
+    (r * 2047.0 + 0.5) as u32 | ((g * 2047.0 + 0.5) as u32) << 11 | ((b * 1023.0 + 0.5) as u32) << 22
+}
+
+/// Eight texels as linear red, green and blue, in units of 1/2047^2 and 1/1023^2 of the surface's scale.
+pub(super) fn decode(words: u32x8) -> [TexelLanes; 3] {
+    let part = |bits: u32x8| {
+        let root = TexelLanes::from_i32x8(as_signed(bits));
+        root * root
+    };
+    [part(words & u32x8::splat(2047)), part(words >> 11_u32 & u32x8::splat(2047)), part(words >> 22_u32)]
+}
+
+/// What a decoded 1 stands for, by channel.
+pub(super) const UNITS: [f32; 3] = [1.0 / (2047.0 * 2047.0), 1.0 / (2047.0 * 2047.0), 1.0 / (1023.0 * 1023.0)];
+
+/// Half the size, each texel the mean of the area that it covers.
+fn halve([w, h]: [usize; 2], colors: &[[f32; 3]]) -> ([usize; 2], Vec<[f32; 3]>) {
+    use crate::texture::box_taps;
+    let to = [w, h].map(|n| (n / 2).max(1));
+    let columns: Vec<_> = (0..to[0]).map(|x| box_taps(x, w, to[0])).collect();
+    let mut halved = Vec::with_capacity(to[0] * to[1]);
+    for y in 0..to[1] {
+        let rows = box_taps(y, h, to[1]);
+        for columns in &columns {
+            let mut sum = [0.0; 3];
+            for &(j, wy) in &rows {
+                for &(i, wx) in columns {
+                    (0..3).for_each(|c| sum[c] += wx * wy * colors[j * w + i][c]);
+                }
+            }
+            halved.push(sum);
+        }
+    }
+    (to, halved)
+}
