@@ -30,7 +30,7 @@ mod sets;
 mod symmetry;
 mod weights;
 
-pub use crate::filter::{Filtered, Footprint};
+pub use crate::filter::Footprint;
 pub use frames::{fan_is_hit_once, frame_is_finite, march_finds_first_hit};
 pub use pixel::{Pixel, anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels};
 pub use sets::visible_sets;
@@ -45,7 +45,7 @@ fn ensure(holds: bool, message: impl FnOnce() -> String) -> Checked {
     if holds { Ok(()) } else { Err(message()) }
 }
 
-/// The largest difference of two colours, of 65535.
+/// The largest difference of two colours.
 fn difference(a: [f32; 3], b: [f32; 3]) -> f32 {
     (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max)
 }

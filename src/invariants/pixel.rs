@@ -1,14 +1,14 @@
 //! A pixel in texture space, and what must hold of its ellipse and colour.
 
 use super::{Checked, ensure};
-use crate::filter::{self, Differences, Ellipse, Filtered, Footprint, RECONSTRUCTION, TexelSet, horizon, isotropic};
+use crate::filter::{self, Differences, Ellipse, Footprint, RECONSTRUCTION, TexelSet, horizon, isotropic};
 use crate::relief::{MAX_SLOPE, finite};
 use crate::settings::{Filter, Formulas, Settings};
 use crate::simd::PixelLanes;
-use crate::texture::Surface;
+use crate::texture::{FULL, Surface};
 
-/// How far, of 65535, a mean may lie outside its texels: sums of thousands of weights in f32, divided.
-const ROUNDING: f32 = 0.25;
+/// How far a mean may lie outside its texels: sums of thousands of weights in f32, divided.
+const ROUNDING: f64 = 4e-6;
 
 /// A pixel as a filter sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,14 +31,14 @@ impl Pixel {
     }
 }
 
-/// The pixel's colour, as stored, by the filter of the settings. The filters that know no footprint take the texels at its
+/// The pixel's colour by the filter of the settings, in near field; 1 is the surface's `color_scale`. The filters that know no footprint take the texels at its
 /// centre; `Parallax` and `Truth`, which are means over the screen, count as `Bilinear`.
 #[must_use]
-pub fn filtered(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Filtered {
+pub fn filtered(surface: &Surface, pixel: &Pixel, settings: &Settings) -> [f32; 3] {
     let Pixel { footprint, displacement } = pixel;
     let ellipse_mean =
         |hidden_by| filter::ellipse_mean(surface, footprint, hidden_by, settings, &mut TexelSet::default()).0;
-    match settings.filter {
+    let mean = match settings.filter {
         Filter::Nearest => isotropic::nearest(surface, footprint.center),
         Filter::Trilinear => {
             isotropic::trilinear(surface, footprint.center, isotropic::longest_side(surface, footprint))
@@ -47,7 +47,8 @@ pub fn filtered(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Filter
         Filter::Visible => ellipse_mean(Some(*displacement)),
         Filter::Horizon => horizon::visible_mean(surface, footprint, *displacement, settings, None).0,
         Filter::Bilinear | Filter::Parallax | Filter::Truth => isotropic::bilinear(surface, 0, footprint.center),
-    }
+    };
+    mean.color.map(|c| c / FULL as f32)
 }
 
 /// The ellipse of any derivatives is finite, its axes are above 0 and within the bounds, and no longer than the footprint
@@ -85,10 +86,10 @@ pub fn within_texels(surface: &Surface, pixel: &Pixel, settings: &Settings) -> C
         let color = crate::reference::color(base, [x, y]);
         (0..3).for_each(|i| (least[i], most[i]) = (least[i].min(color[i]), most[i].max(color[i])));
     }
-    let color = filtered(surface, pixel, settings).color;
+    let color = filtered(surface, pixel, settings);
     let is_within = |i: usize| {
-        let (c, slack) = (f64::from(color[i]), f64::from(ROUNDING));
-        c >= least[i] - slack && c <= most[i] + slack
+        let c = f64::from(color[i]);
+        c >= least[i] - ROUNDING && c <= most[i] + ROUNDING
     };
     ensure((0..3).all(is_within), || format!("{color:?} is not within {least:?} to {most:?}"))
 }

@@ -10,9 +10,9 @@ use crate::texture::{ColorImage, HeightImage, Surface, SurfaceMaps};
 /// The same pixel of two textures.
 fn agree(maps: [SurfaceMaps; 2], pixels: [&Pixel; 2], settings: &Settings, tolerance: f32) -> Checked {
     let [a, b] = maps.map(|maps| Surface::new(maps).map_err(|e| e.to_string()));
-    let [a, b] = [filtered(&a?, pixels[0], settings).color, filtered(&b?, pixels[1], settings).color];
+    let [a, b] = [filtered(&a?, pixels[0], settings), filtered(&b?, pixels[1], settings)];
     let error = difference(a, b);
-    ensure(error <= tolerance, || format!("{a:?} became {b:?}, {error} of 65535 apart"))
+    ensure(error <= tolerance, || format!("{a:?} became {b:?}, {error} apart"))
 }
 
 /// The maps with every texel moved: the new texel at `(x, y)` of a map of the new size is the old one at `from(x, y)`.
@@ -87,15 +87,15 @@ pub fn mirrored(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings, toleranc
     agree([maps.clone(), mirrored], [pixel, &there], settings, tolerance)
 }
 
-/// Relief of half the height under a view of twice the slope hides the same and gives the same colour. Depths must be even
-/// numbers of 65535, so that their halves are stored exactly, and maps of one size.
+/// Relief of half the height under a view of twice the slope hides the same and gives the same colour. Heights must be 2
+/// more than a multiple of 4, so that half of their depth is stored exactly, and maps of one size.
 ///
 /// # Errors
 /// Says what broke.
 pub fn same_when_scaled(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings, tolerance: f32) -> Checked {
     let mut shallow = maps.clone();
     if let Some(heights) = &mut shallow.height {
-        heights.texels.iter_mut().for_each(|h| *h = 65535 - (65535 - *h) / 2);
+        heights.texels.iter_mut().for_each(|h| *h = 2 * (32767 - (32767 - *h / 2) / 2));
     }
     let mut slanted = *pixel;
     slanted.displacement = slanted.displacement.map(|d| d * 2.0);

@@ -6,7 +6,7 @@ use crate::reference::{Conic, Lines, RAY_TIE, ray_margin, texels};
 use crate::settings::{Filter, Formulas, Settings};
 use crate::texture::{ColorImage, Surface, SurfaceMaps};
 
-/// How far the weights of all texels may be from adding up to 1: a mip level rounds each texel to 1/65535.
+/// How far the weights of all texels may be from adding up to 1: a mip level rounds each texel.
 const SUM_ROUNDING: f64 = 1e-3;
 
 /// The horizon weighs every texel of the texture 0 or more, and all weights add up to 1 whatever the relief. Takes a render
@@ -24,9 +24,9 @@ pub fn horizon_weights(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings) -
         let lit = |x: u32, y: u32| [0, 1, 2].map(|i| if y * w + x == first + i { 1.0 } else { 0.0 });
         let maps = SurfaceMaps { albedo: Some(ColorImage::from_fn(w, h, lit)), ..maps.clone() };
         let surface = Surface::new(maps).map_err(|e| e.to_string())?;
-        let color = filtered(&surface, pixel, &settings).color;
+        let color = filtered(&surface, pixel, &settings);
         ensure(color.iter().all(|c| *c >= 0.0), || format!("texels {first} to {} weigh {color:?}", first + 2))?;
-        sum += color.iter().map(|c| f64::from(*c) / 65535.0).sum::<f64>();
+        sum += color.iter().map(|c| f64::from(*c)).sum::<f64>();
     }
     ensure((sum - 1.0).abs() < SUM_ROUNDING, || format!("the weights add up to {sum}"))
 }
@@ -48,7 +48,7 @@ pub fn records_are_visible(surface: &Surface, pixel: &Pixel, settings: &Settings
         let middle = texel.map(|c| f64::from(c) + 0.5);
         let is_record = Lines { level, conic, center: middle, displacement, spacing: 1.0 }.is_record(texel);
         ensure(is_record == (margin <= 0.0) || margin.abs() < RAY_TIE, || {
-            format!("{texel:?}: record {is_record}, relief {margin} of 65535 above its ray")
+            format!("{texel:?}: record {is_record}, relief {margin} of its depth above the ray")
         })?;
     }
     Ok(())

@@ -60,7 +60,7 @@ impl Lines<'_> {
     /// Whether a texel makes a new record on the line through the ellipse's middle, which must be the texel's centre.
     #[must_use]
     pub fn is_record(&self, texel: [i32; 2]) -> bool {
-        let own = -(1.0 - height(self.level, texel) / 65535.0) * self.depth().abs();
+        let own = -(1.0 - height(self.level, texel)) * self.depth().abs();
         // Rows nearer than the deepest relief cannot reach over the texel's place.
         let first = -(self.depth().abs().ceil() as i64) - 1;
         (first..0).all(|i| self.crossing(i, 0.0).p <= own)
@@ -120,7 +120,7 @@ impl Lines<'_> {
         let x = x0 + self.shear() * toward * eta + xi;
         let texels = [0.0, 1.0].map(|far| self.turned([x.floor() + far, toward * y]).map(|c| c as i32));
         let (part, [near, far]) = (x - x.floor(), texels.map(|texel| height(self.level, texel)));
-        let p = eta - (1.0 - (near + (far - near) * part) / 65535.0) * self.depth().abs();
+        let p = eta - (1.0 - (near + (far - near) * part)) * self.depth().abs();
         Crossing { p, texels, part }
     }
 

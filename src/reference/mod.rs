@@ -18,17 +18,17 @@ pub use horizon::Lines;
 pub use supersample::{Ray, first_hit, supersampled};
 pub use texels::{RAY_TIE, mean, ray_margin, texels};
 
-use crate::texture::Level;
+use crate::texture::{FULL, Level};
 
-/// Red, green and blue of a stored texel, 0 to 65535.
+/// Red, green and blue of a stored texel, 0 to 1.
 pub(crate) fn color(level: &Level, [x, y]: [i32; 2]) -> [f64; 3] {
     let [red_green, blue_height, _] = level.packed(x, y);
-    [red_green & 0xffff, red_green >> 16, blue_height & 0xffff].map(f64::from)
+    [red_green & 0xffff, red_green >> 16, blue_height & 0xffff].map(|c| f64::from(c) / f64::from(FULL))
 }
 
-/// Height of a stored texel, 0 to 65535.
+/// Height of a stored texel, 0 to 1.
 fn height(level: &Level, [x, y]: [i32; 2]) -> f64 {
-    f64::from(level.packed(x, y)[1] >> 16)
+    f64::from(level.packed(x, y)[1] >> 16) / f64::from(FULL)
 }
 
 /// `exp(-x)` for x of 0 to 4, by its series, to the last bits.

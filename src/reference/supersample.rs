@@ -31,7 +31,7 @@ impl Ray {
     /// How far the ray is above the bilinear relief at a depth; 1 is the whole relief.
     #[must_use]
     pub fn gap(&self, level: &Level, depth: f64) -> f64 {
-        1.0 - depth - bilinear(self.at(depth), |texel| height(level, texel)) / 65535.0
+        1.0 - depth - bilinear(self.at(depth), |texel| height(level, texel))
     }
 }
 

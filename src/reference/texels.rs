@@ -3,9 +3,9 @@
 use super::{Conic, color, exp_negative, height};
 use crate::texture::Level;
 
-/// How close a ray may pass relief, of 65535, for rounding to decide: a kernel adds up the ray's height step by step in
-/// f32, where a step rounds by up to 1/256.
-pub const RAY_TIE: f64 = 1.0;
+/// How close a ray may pass relief, of its whole depth, for rounding to decide: a kernel adds up the ray's height step by
+/// step in f32, and leaves out what rises by less than a sixteenth of a stored unit above the ray.
+pub const RAY_TIE: f64 = 1.0 / 65536.0;
 
 /// The texels whose centre lies in the ellipse around `center` (in texels), with their `r^2`; those up to `slack` outside
 /// are listed too.
@@ -23,8 +23,8 @@ fn r2(conic: &Conic, center: [f64; 2], [x, y]: [i32; 2]) -> f64 {
     conic.r2(f64::from(x) + 0.5 - center[0], f64::from(y) + 0.5 - center[1])
 }
 
-/// How far the relief rises above the ray from a texel to the eye, of 65535: the texel is hidden where this is above
-/// the kernels' tolerance of an eighth. `displacement` is in texels down to the deepest relief.
+/// How far the relief rises above the ray from a texel to the eye, of its whole depth: the texel is hidden where this is
+/// above 0. `displacement` is in texels down to the deepest relief.
 ///
 /// The ray is followed in steps of one texel along the longer axis, with the relief linear across.
 #[must_use]
@@ -36,14 +36,14 @@ pub fn ray_margin(level: &Level, texel: [i32; 2], displacement: [f64; 2]) -> f64
     let mut most = f64::NEG_INFINITY;
     let mut step = 1.0;
     loop {
-        let ray = start + step * 65535.0 / longest;
+        let ray = start + step / longest;
         let place = [f64::from(texel[0]) - dx / longest * step, f64::from(texel[1]) - dy / longest * step];
         let [x, y] = place.map(|p| if (p - p.round()).abs() < 1e-9 { p.round() } else { p });
         let (near, part) = ([x.floor() as i32, y.floor() as i32], if along_x { y - y.floor() } else { x - x.floor() });
         let far = if along_x { [near[0], near[1] + 1] } else { [near[0] + 1, near[1]] };
         let relief = height(level, near) + (height(level, far) - height(level, near)) * part;
         most = most.max(relief - ray);
-        if ray >= 65535.0 {
+        if ray >= 1.0 {
             return most;
         }
         step += 1.0;
