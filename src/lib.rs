@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod frame;
+pub mod invariants;
 pub mod metrics;
 pub mod scene;
 pub mod texture;
@@ -14,6 +15,8 @@ pub mod filter;
 pub mod geometry;
 #[doc(hidden)]
 pub mod raster;
+#[doc(hidden)]
+pub mod reference;
 #[doc(hidden)]
 pub mod relief;
 mod render;

@@ -33,14 +33,15 @@ pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelL
     let bounded =
         |d: PixelLanes| finite(d).fast_max(PixelLanes::splat(-MAX_SLOPE)).fast_min(PixelLanes::splat(MAX_SLOPE));
     let step = [bounded(displacement[0]) * nu, bounded(displacement[1]) * nv];
-    let level = field.first_level(longest(&step));
+    // Each ray's own, so that its hit does not depend on the rays beside it.
+    let level = step[0].abs().fast_max(step[1].abs()).to_array().map(|length| field.first_level(length));
     let mut rays = Rays {
         start: [start(base[0], nu, field.size[0]), start(base[1], nv, field.size[1])],
         step,
         inverse: step
             .map(|s| PixelLanes::ONE / s.abs().simd_gt(PixelLanes::splat(1e-9)).select(s, PixelLanes::splat(1e-9))),
         depth: PixelLanes::ZERO,
-        level: i32x8::splat(level),
+        level: i32x8::new(level),
         parent: [i32x8::splat(i32::MIN); 2],
         is_done: i32x8::splat(0),
     };
@@ -51,10 +52,6 @@ pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelL
         }
     }
     rays.depth.fast_min(PixelLanes::ONE)
-}
-
-fn longest(step: &[PixelLanes; 2]) -> f32 {
-    step[0].abs().fast_max(step[1].abs()).to_array().into_iter().fold(0.0, f32::max)
 }
 
 /// Eight rays on their way. Places are in cells: texel centres lie at whole numbers.

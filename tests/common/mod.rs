@@ -1,7 +1,10 @@
 //! What several tests need: numbers from a fixed seed, and small surfaces.
-#![allow(dead_code, reason = "each test uses a part")]
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
 use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
+use basrelief::{Camera, Material, Mesh, Scene};
+use glam::{Vec2, Vec3};
+use std::sync::Arc;
 
 /// Numbers from a fixed seed (splitmix64).
 pub struct Random(pub u64);
@@ -36,4 +39,49 @@ pub fn flat_surface(width: u32, height: u32, wrap: Wrap, seed: u64) -> Surface {
     let mut random = Random(seed);
     let albedo = ColorImage::from_fn(width, height, |_, _| [0; 3].map(|_| random.within(0.0, 1.0)));
     Surface::new(SurfaceMaps { albedo: Some(albedo), wrap, ..Default::default() }).expect("valid maps")
+}
+
+/// A floor of `2 * half` units a side, `repeats` texture repeats a unit, seen from above its near edge.
+pub fn floor_scene(surface: Surface, repeats: f32) -> Scene {
+    let half = 20.0;
+    let corners = [[-half, half], [half, half], [half, -half], [-half, -half]];
+    let positions = corners.iter().map(|&[x, z]| Vec3::new(x, 0.0, z)).collect();
+    let tex_coords = corners.iter().map(|&[x, z]| Vec2::new(x, -z) * repeats).collect();
+    Scene {
+        meshes: vec![Mesh::new(positions, tex_coords, vec![], vec![[0, 1, 2], [0, 2, 3]])],
+        materials: vec![Material { surface: Some(Arc::new(surface)), ..Material::default() }],
+        camera: Camera {
+            eye: Vec3::new(0.0, 1.6, 6.0),
+            target: Vec3::new(0.0, 0.6, 0.0),
+            up: Vec3::Y,
+            fov_degrees: 60.0,
+            near: 0.01,
+        },
+        ..Scene::default()
+    }
+}
+
+/// Rounded stones in a square pattern with dark joints, by whole-number noise and squares alone.
+pub fn cobbles(size: u32, stones: u32) -> SurfaceMaps {
+    let side = size as f32 / stones as f32;
+    let noise = |x: u32, y: u32| {
+        let hash = (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
+        ((hash ^ hash >> 15) & 0xffff) as f32 / 65535.0
+    };
+    let shape = move |x: u32, y: u32| {
+        let [u, v] = [x, y].map(|c| ((c as f32 + 0.5) / side).fract() * 2.0 - 1.0);
+        let [u2, v2] = [u * u, v * v];
+        let stone = noise((x as f32 / side) as u32 + 77, (y as f32 / side) as u32);
+        ((1.0 - u2 * u2 * u2) * (1.0 - v2 * v2 * v2), stone)
+    };
+    let height = HeightImage::from_fn(size, size, |x, y| {
+        let (dome, stone) = shape(x, y);
+        dome * (0.7 + 0.3 * stone) * (0.95 + 0.05 * noise(x, y))
+    });
+    let albedo = ColorImage::from_fn(size, size, |x, y| {
+        let (dome, stone) = shape(x, y);
+        let light = (0.08 + 0.5 * dome.min(0.6) * (0.5 + stone)) * (0.7 + 0.3 * noise(x + 3, y + 5));
+        [light, light * (0.8 + 0.2 * stone), light * 0.8]
+    });
+    SurfaceMaps { albedo: Some(albedo), height: Some(height), relief_depth: 0.06, ..Default::default() }
 }

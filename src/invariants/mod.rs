@@ -1,0 +1,51 @@
+//! What must hold of the filters for any texture, footprint and view: for property tests and fuzzing, yours included.
+//!
+//! Each function checks one property for one pixel and says in one line what broke. A [`Pixel`] is a footprint and a view
+//! in texture space; [`Pixel::new`] takes any numbers, NaN and infinity included, and bounds them as the renderer does.
+//! The filter that is checked is that of the [`Settings`].
+//!
+//! To fuzz your own textures and settings:
+//!
+//! ```
+//! use basrelief::invariants::{self, Pixel};
+//! use basrelief::texture::{HeightImage, Surface, SurfaceMaps};
+//! use basrelief::{Filter, Settings};
+//! use proptest::prelude::*;
+//!
+//! let stairs = HeightImage::from_fn(16, 16, |x, _| x as f32 / 15.0);
+//! let surface = Surface::new(SurfaceMaps { height: Some(stairs), relief_depth: 0.1, ..Default::default() })?;
+//! let settings = Settings { filter: Filter::Visible, texel_budget: 64, ..Default::default() };
+//! let place = || prop::array::uniform2(-1.0_f32..1.0);
+//! proptest!(|(center in place(), dx in place(), dy in place(), view in place())| {
+//!     let pixel = Pixel::new(center, dx, dy, view);
+//!     invariants::visible_sets(&surface, &pixel, &settings).map_err(TestCaseError::fail)?;
+//!     invariants::within_texels(&surface, &pixel, &settings).map_err(TestCaseError::fail)?;
+//! });
+//! # Ok::<(), basrelief::Error>(())
+//! ```
+
+mod frames;
+mod pixel;
+mod sets;
+mod symmetry;
+mod weights;
+
+pub use crate::filter::Footprint;
+pub use frames::{fan_is_hit_once, frame_is_finite, march_finds_first_hit};
+pub use pixel::{Pixel, anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels};
+pub use sets::visible_sets;
+pub use symmetry::{mirrored, same_when_scaled, shifted, turned};
+pub use weights::{horizon_weights, records_are_visible};
+
+/// What a check says: nothing, or what broke.
+pub type Checked = Result<(), String>;
+
+/// `Ok` where the claim holds, else what `message` says.
+fn ensure(holds: bool, message: impl FnOnce() -> String) -> Checked {
+    if holds { Ok(()) } else { Err(message()) }
+}
+
+/// The largest difference of two colours.
+fn difference(a: [f32; 3], b: [f32; 3]) -> f32 {
+    (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max)
+}

@@ -1,0 +1,55 @@
+//! The weights of the floating horizon, seen through textures in which one texel at a time is lit.
+
+use super::{Checked, Pixel, ensure, filtered};
+use crate::filter::Ellipse;
+use crate::reference::{Conic, Lines, RAY_TIE, ray_margin, texels};
+use crate::settings::{Filter, Formulas, Settings};
+use crate::texture::{ColorImage, Surface, SurfaceMaps};
+
+/// How far the weights of all texels may be from adding up to 1: a mip level rounds each texel.
+const SUM_ROUNDING: f64 = 1e-3;
+
+/// The horizon weighs every texel of the texture 0 or more, and all weights add up to 1 whatever the relief. Takes a render
+/// of the pixel for every three texels, so the texture should be small.
+///
+/// # Errors
+/// Says what broke.
+pub fn horizon_weights(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings) -> Checked {
+    let size = Surface::new(maps.clone()).map_err(|e| e.to_string())?.levels[0].clone();
+    let settings = Settings { filter: Filter::Horizon, ..settings.clone() };
+    let repeats = if maps.wrap == crate::texture::Wrap::Mirror { 2 } else { 1 };
+    let (w, h) = (size.width as u32 / repeats, size.height as u32 / repeats);
+    let mut sum = 0.0;
+    for first in (0..w * h).step_by(3) {
+        let lit = |x: u32, y: u32| [0, 1, 2].map(|i| if y * w + x == first + i { 1.0 } else { 0.0 });
+        let maps = SurfaceMaps { albedo: Some(ColorImage::from_fn(w, h, lit)), ..maps.clone() };
+        let surface = Surface::new(maps).map_err(|e| e.to_string())?;
+        let color = filtered(&surface, pixel, &settings);
+        ensure(color.iter().all(|c| *c >= 0.0), || format!("texels {first} to {} weigh {color:?}", first + 2))?;
+        sum += color.iter().map(|c| f64::from(*c)).sum::<f64>();
+    }
+    ensure((sum - 1.0).abs() < SUM_ROUNDING, || format!("the weights add up to {sum}"))
+}
+
+/// A texel makes a new record on the line through its centre exactly if the ray from it to the eye is free, up to ties:
+/// places where the ray passes the relief by less than rounding tells.
+///
+/// # Errors
+/// Says what broke.
+pub fn records_are_visible(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Checked {
+    let (level, scale) = (&surface.levels[0], surface.texels_per_repeat(0).map(f64::from));
+    let ellipse = Ellipse::new(&pixel.footprint, surface.texels_per_repeat(0), Formulas::Meant);
+    let conic = Conic::from(&ellipse.widened(settings.max_anisotropy, Formulas::Meant));
+    let scaled = |p: [f32; 2]| [0, 1].map(|i| f64::from(p[i]) * scale[i]);
+    let [center, displacement] = [pixel.footprint.center, pixel.displacement].map(scaled);
+    for (texel, _) in texels(&conic, center, 0.0) {
+        let margin = ray_margin(level, texel, displacement);
+        // One line, through the texel's centre, in a footprint that reaches from before its place to behind it.
+        let middle = texel.map(|c| f64::from(c) + 0.5);
+        let is_record = Lines { level, conic, center: middle, displacement, spacing: 1.0 }.is_record(texel);
+        ensure(is_record == (margin <= 0.0) || margin.abs() < RAY_TIE, || {
+            format!("{texel:?}: record {is_record}, relief {margin} of its depth above the ray")
+        })?;
+    }
+    Ok(())
+}

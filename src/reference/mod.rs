@@ -1,0 +1,48 @@
+//! The scalar twin that the kernels are held against: the definitions of FILTER, one texel and one ray at a time, in f64.
+//!
+//! * [`derivatives`] and [`Conic`]: formulas (1), (2) and (3), as meant and as printed.
+//! * [`texels`], [`ray_margin`], [`mean`]: the texels T of an ellipse, which of them a ray to the eye leaves visible, and
+//!   the weighted mean of a set.
+//! * [`Lines`]: the floating horizon line by line, with the weight of every texel.
+//! * [`first_hit`], [`supersampled`]: a dense march, and the value of a pixel by many rays.
+//!
+//! Short and slow on purpose. Shares with the kernels the packed texels, the ellipse's definition, and nothing else.
+
+mod formulas;
+mod horizon;
+mod supersample;
+mod texels;
+
+pub use formulas::{Conic, derivatives};
+pub use horizon::Lines;
+pub use supersample::{Ray, first_hit, supersampled};
+pub use texels::{RAY_TIE, mean, ray_margin, texels};
+
+use crate::texture::{FULL, Level};
+
+/// Red, green and blue of a stored texel, 0 to 1.
+pub(crate) fn color(level: &Level, [x, y]: [i32; 2]) -> [f64; 3] {
+    let [red_green, blue_height, _] = level.packed(x, y);
+    [red_green & 0xffff, red_green >> 16, blue_height & 0xffff].map(|c| f64::from(c) / f64::from(FULL))
+}
+
+/// Height of a stored texel, 0 to 1.
+fn height(level: &Level, [x, y]: [i32; 2]) -> f64 {
+    f64::from(level.packed(x, y)[1] >> 16) / f64::from(FULL)
+}
+
+/// `exp(-x)` for x of 0 to 4, by its series, to the last bits.
+fn exp_negative(x: f64) -> f64 {
+    (1..=40).rev().fold(1.0, |sum, i| 1.0 - sum * x / f64::from(i))
+}
+
+/// The integral of `exp(-2 z^2)` from 0 to z, for |z| up to 1, by its series.
+fn integral(z: f64) -> f64 {
+    // Term k is (-2)^k z^(2k+1) / (k! (2k+1)).
+    let mut power = z;
+    (0..40).fold(0.0, |sum, k| {
+        let term = power / f64::from(2 * k + 1);
+        power *= -2.0 * z * z / f64::from(k + 1);
+        sum + term
+    })
+}

@@ -1,0 +1,399 @@
+//! Properties of the filters over random textures, footprints and views, and the kernels against the scalar reference.
+
+mod common;
+
+use basrelief::filter::visible::{Occlusion, remove_hidden};
+use basrelief::filter::{Ellipse, TexelSet, ewa, horizon};
+use basrelief::invariants::{self, Checked, Pixel};
+use basrelief::reference::{Conic, Lines, RAY_TIE, mean, ray_margin, supersampled, texels};
+use basrelief::texture::{ColorImage, FULL, HeightImage, Surface, SurfaceMaps, Wrap};
+use basrelief::{Filter, Formulas, Settings, Visibility};
+use common::{Random, cobbles};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+/// The same cases on every run: what rounding decides must not fail one build in a thousand.
+fn cases(num: u32) -> ProptestConfig {
+    ProptestConfig { cases: num, rng_seed: RngSeed::Fixed(2017), failure_persistence: None, ..Default::default() }
+}
+
+fn broke(checked: Checked) -> Result<(), TestCaseError> {
+    checked.map_err(TestCaseError::fail)
+}
+
+/// Random texels and heights, rough or in steps, of any small size.
+fn maps(width: u32, height: u32, wrap: Wrap, seed: u64) -> SurfaceMaps {
+    let mut random = Random(seed);
+    let roughness = [0.05, 0.5, 1.0][(seed % 3) as usize];
+    let albedo = ColorImage::from_fn(width, height, |_, _| [0; 3].map(|_| random.within(0.0, 1.0)));
+    let heights = HeightImage::from_fn(width, height, |_, _| {
+        let h = random.within(1.0 - roughness, 1.0);
+        if seed % 2 == 0 { h } else { (h * 4.0).round() / 4.0 }
+    });
+    SurfaceMaps { albedo: Some(albedo), height: Some(heights), wrap, relief_depth: 0.1, ..Default::default() }
+}
+
+fn surface(maps: SurfaceMaps) -> Surface {
+    Surface::new(maps).expect("valid maps")
+}
+
+/// Maps by what they are made from, which is what a failure prints.
+#[derive(Clone, Debug)]
+struct Made(u32, u32, Wrap, u64);
+
+impl Made {
+    fn maps(&self) -> SurfaceMaps {
+        maps(self.0, self.1, self.2, self.3)
+    }
+
+    fn surface(&self) -> Surface {
+        surface(self.maps())
+    }
+}
+
+fn any_maps() -> impl Strategy<Value = Made> {
+    let wrap = prop::sample::select(vec![Wrap::Repeat, Wrap::Mirror, Wrap::Clamp]);
+    (1_u32..13, 1_u32..13, wrap, any::<u64>()).prop_map(|(w, h, wrap, seed)| Made(w, h, wrap, seed))
+}
+
+/// Repeating square maps of a power of two, which shift and turn exactly, with depths that can be halved.
+fn even_maps(seed: u64) -> SurfaceMaps {
+    let mut maps = maps(16, 16, Wrap::Repeat, seed);
+    maps.height.as_mut().expect("heights").texels.iter_mut().for_each(|h| *h = *h & !3 | 2);
+    maps
+}
+
+/// Any number that a footprint may hold.
+fn any_number() -> impl Strategy<Value = f32> {
+    let strange =
+        vec![0.0, -0.0, 1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, 1e-30, f32::MIN_POSITIVE];
+    prop_oneof![3 => -1.0_f32..1.0, 1 => -1e-4_f32..1e-4, 1 => prop::sample::select(strange), 1 => any::<f32>()]
+}
+
+fn any_pixel() -> impl Strategy<Value = Pixel> {
+    let pair = || prop::array::uniform2(any_number());
+    (pair(), pair(), pair(), pair()).prop_map(|(center, dx, dy, view)| Pixel::new(center, dx, dy, view))
+}
+
+/// A pixel with derivatives up to `reach` and a displacement up to `walk` repeats, at a 1024th of a repeat.
+fn pixel(reach: f32, walk: f32) -> impl Strategy<Value = Pixel> {
+    let pair = |most: f32| prop::array::uniform2(-most..most);
+    (pair(1.0), pair(reach), pair(reach), pair(walk))
+        .prop_map(|(center, dx, dy, view)| Pixel::new(center.map(|c| (c * 1024.0).round() / 1024.0), dx, dy, view))
+}
+
+const ALL: [Filter; 6] =
+    [Filter::Nearest, Filter::Bilinear, Filter::Trilinear, Filter::Ewa, Filter::Visible, Filter::Horizon];
+
+/// The filters that can be kept on the base level.
+const BASE_LEVEL: [Filter; 5] = [Filter::Nearest, Filter::Bilinear, Filter::Ewa, Filter::Visible, Filter::Horizon];
+
+fn settings(filter: Filter) -> Settings {
+    Settings { filter, texel_budget: 256, lines: 16, far_field: false, ..Settings::default() }
+}
+
+/// Base level wherever a footprint is within the caps.
+fn base_level(filter: Filter) -> Settings {
+    Settings { texel_budget: 0, lines: 64, ..settings(filter) }
+}
+
+proptest! {
+    #![proptest_config(cases(10_000))]
+
+    #[test]
+    fn ellipses_are_finite_and_bounded(pixel in any_pixel(), texels in prop::array::uniform2(1_u32..32768), limit in 1.0_f32..64.0) {
+        broke(invariants::ellipse_is_bounded(&pixel, texels.map(|n| n as f32), limit))?;
+    }
+
+    #[test]
+    fn colours_lie_within_the_texels(made in any_maps(), pixel in any_pixel(), filter in prop::sample::select(ALL.to_vec())) {
+        broke(invariants::within_texels(&made.surface(), &pixel, &settings(filter)))?;
+    }
+
+    #[test]
+    fn constant_textures_give_their_constant(seed in any::<u64>(), color in any::<[u16; 3]>(), pixel in any_pixel(), filter in prop::sample::select(ALL.to_vec())) {
+        let mut maps = maps(8, 8, Wrap::Repeat, seed);
+        maps.albedo = Some(ColorImage { width: 1, height: 1, texels: vec![color], scale: 1.0 });
+        broke(invariants::within_texels(&surface(maps), &pixel, &settings(filter)))?;
+    }
+
+    #[test]
+    fn sets_of_texels_are_the_papers(made in any_maps(), pixel in pixel(0.5, 2.0)) {
+        broke(invariants::visible_sets(&made.surface(), &pixel, &settings(Filter::Visible)))?;
+    }
+
+    #[test]
+    fn sets_of_texels_are_the_papers_for_any_numbers(made in any_maps(), pixel in any_pixel()) {
+        broke(invariants::visible_sets(&made.surface(), &pixel, &settings(Filter::Visible)))?;
+    }
+
+    #[test]
+    fn marches_find_the_first_hit(made in any_maps(), pixel in pixel(0.1, 2.0)) {
+        broke(invariants::march_finds_first_hit(&made.surface(), &pixel))?;
+    }
+
+    #[test]
+    fn records_are_what_rays_leave_visible(made in any_maps(), pixel in pixel(0.3, 1.0)) {
+        broke(invariants::records_are_visible(&made.surface(), &pixel, &settings(Filter::Horizon)))?;
+    }
+
+    #[test]
+    fn anisotropy_limits_above_the_footprints_change_nothing(made in any_maps(), pixel in pixel(0.5, 1.0), filter in prop::sample::select(ALL.to_vec())) {
+        let settings = Settings { max_anisotropy: 16.0, ..settings(filter) };
+        broke(invariants::anisotropy_limit_only_limits(&made.surface(), &pixel, &settings))?;
+    }
+
+    #[test]
+    fn shifting_by_texels_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), by in prop::array::uniform2(0_u32..16), filter in prop::sample::select(BASE_LEVEL.to_vec())) {
+        broke(invariants::shifted(&even_maps(seed), &pixel, &base_level(filter), by, tolerance(filter)))?;
+    }
+
+    #[test]
+    fn turning_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), filter in prop::sample::select(ALL.to_vec())) {
+        broke(invariants::turned(&even_maps(seed), &pixel, &base_level(filter), tolerance(filter)))?;
+    }
+
+    #[test]
+    fn mirroring_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), filter in prop::sample::select(ALL.to_vec())) {
+        broke(invariants::mirrored(&even_maps(seed), &pixel, &base_level(filter), tolerance(filter)))?;
+    }
+
+    #[test]
+    fn scaling_height_and_view_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), filter in prop::sample::select(vec![Filter::Visible, Filter::Horizon])) {
+        broke(invariants::same_when_scaled(&even_maps(seed), &pixel, &base_level(filter), tolerance(filter)))?;
+    }
+}
+
+/// Sums in another order; for the sweep also places between texels that round differently.
+fn tolerance(filter: Filter) -> f32 {
+    if filter == Filter::Horizon { 1e-3 } else { 2e-5 }
+}
+
+proptest! {
+    #![proptest_config(cases(2_000))]
+
+    #[test]
+    fn horizon_weights_are_a_partition(seed in any::<u64>(), wrap in prop::sample::select(vec![Wrap::Repeat, Wrap::Mirror, Wrap::Clamp]), pixel in any_pixel()) {
+        broke(invariants::horizon_weights(&maps(4, 3, wrap, seed), &pixel, &settings(Filter::Horizon)))?;
+    }
+}
+
+/// A stored colour as a share of the brightest.
+fn unit(stored: f32) -> f32 {
+    stored / FULL as f32
+}
+
+/// The kernels' view of a pixel at the base level, and the reference's.
+struct Case {
+    surface: Surface,
+    ellipse: Ellipse,
+    center: [f32; 2],
+    displacement: [f32; 2],
+}
+
+impl Case {
+    fn new(maps: SurfaceMaps, pixel: &Pixel) -> Self {
+        let surface = surface(maps);
+        let texels = surface.texels_per_repeat(0);
+        let ellipse = Ellipse::new(&pixel.footprint, texels, Formulas::Meant).widened(64.0, Formulas::Meant);
+        let scaled = |p: [f32; 2]| [p[0] * texels[0], p[1] * texels[1]];
+        Self { center: scaled(pixel.footprint.center), displacement: scaled(pixel.displacement), surface, ellipse }
+    }
+
+    fn conic(&self) -> Conic {
+        Conic::from(&self.ellipse)
+    }
+
+    fn center(&self) -> [f64; 2] {
+        self.center.map(f64::from)
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(10_000))]
+
+    #[test]
+    fn ellipse_texels_are_the_references(pixel in pixel(0.3, 1.0)) {
+        let case = Case::new(maps(16, 16, Wrap::Repeat, 1), &pixel);
+        let mut set = TexelSet::default();
+        set.fill_ellipse(&case.ellipse, case.center);
+        // A texel's r^2 is a difference of terms as large as the squared anisotropy.
+        let [short, long] = case.ellipse.squared_axes();
+        let tie = f64::from(1e-5 * (1.0 + long / short));
+        let expected = texels(&case.conic(), case.center(), tie);
+        for (texel, r2) in &expected {
+            prop_assert!(set.contains(texel[0], texel[1]) == (*r2 <= 1.0) || (r2 - 1.0).abs() < tie, "{texel:?} {r2}");
+        }
+        prop_assert!(set.iter().all(|texel| expected.iter().any(|(other, _)| *other == texel)));
+    }
+
+    #[test]
+    fn visible_texels_are_the_references(made in any_maps(), pixel in pixel(0.3, 2.0)) {
+        let case = Case::new(made.maps(), &pixel);
+        let level = &case.surface.levels[0];
+        let mut set = TexelSet::default();
+        set.fill_ellipse(&case.ellipse, case.center);
+        let all: Vec<_> = set.iter().collect();
+        remove_hidden(&mut set, &Occlusion::new(level, case.displacement), Visibility::Exact);
+        for texel in all {
+            let margin = ray_margin(level, texel, case.displacement.map(f64::from));
+            let is_visible = set.contains(texel[0], texel[1]);
+            prop_assert!(is_visible == (margin <= 0.0) || margin.abs() < RAY_TIE, "{texel:?} {margin}");
+        }
+    }
+
+    #[test]
+    fn ewa_mean_is_the_references(made in any_maps(), pixel in pixel(0.3, 2.0)) {
+        let case = Case::new(made.maps(), &pixel);
+        let level = &case.surface.levels[0];
+        let mut set = TexelSet::default();
+        set.fill_ellipse(&case.ellipse, case.center);
+        remove_hidden(&mut set, &Occlusion::new(level, case.displacement), Visibility::Exact);
+        let found = ewa::average(level, &set, &case.ellipse, case.center).map(|mean| mean.color.map(unit));
+        let expected = mean(level, &set.iter().collect::<Vec<_>>(), &case.conic(), case.center());
+        prop_assert_eq!(found.is_some(), expected.is_some());
+        if let (Some(found), Some(expected)) = (found, expected) {
+            // As above, r^2 cancels, and a weight is as wrong as it is.
+            let [short, long] = case.ellipse.squared_axes();
+            let bound = f64::from(2e-5 + 1e-6 * long / short);
+            let error = (0..3).map(|i| (f64::from(found[i]) - expected[i]).abs()).fold(0.0, f64::max);
+            prop_assert!(error < bound, "{found:?} {expected:?} {error} {bound}");
+        }
+    }
+
+    #[test]
+    fn horizon_mean_is_the_references(made in any_maps(), pixel in pixel(0.5, 1.0)) {
+        let surface = made.surface();
+        let found = horizon::visible_mean(&surface, &pixel.footprint, pixel.displacement, &base_level(Filter::Horizon), None).0;
+        let expected = reference_lines(&surface, &pixel).mean();
+        let error = (0..3).map(|i| (f64::from(unit(found.color[i])) - expected[i]).abs()).fold(0.0, f64::max);
+        prop_assert!(error < HORIZON_ERROR, "{:?} {expected:?} {error}", found.color);
+    }
+}
+
+/// How far the sweep may be from the reference on the same lines, of the range: the fitted integral is off by 2e-4, f32 on
+/// steep relief by as much.
+const HORIZON_ERROR: f64 = 2e-3;
+
+/// The lines that the sweep takes.
+fn reference_lines<'a>(surface: &'a Surface, pixel: &Pixel) -> Lines<'a> {
+    let texels = surface.texels_per_repeat(0);
+    let ellipse = Ellipse::new(&pixel.footprint, texels, Formulas::Meant).bounded(64.0);
+    let scaled = |p: [f32; 2]| [p[0] * texels[0], p[1] * texels[1]].map(f64::from);
+    let (center, displacement) = (scaled(pixel.footprint.center), scaled(pixel.displacement));
+    let lines = Lines { level: &surface.levels[0], conic: Conic::from(&ellipse), center, displacement, spacing: 1.0 };
+    let width = 2.0 * lines.half_width();
+    // Narrow footprints take eight lines less than a texel apart.
+    Lines { spacing: if width < 4.5 { width / 8.0 } else { 1.0 }, ..lines }
+}
+
+/// A floor's footprint: `aspect` times as long along the view as across.
+fn floor_pixel(center: [f32; 2], across: f32, aspect: f32, angle: f32, walk: f32) -> Pixel {
+    let (c, s) = (angle.cos(), angle.sin());
+    Pixel::new(center, [-s * across, c * across], [c * across * aspect, s * across * aspect], [c * walk, s * walk])
+}
+
+#[test]
+fn horizon_is_close_to_many_rays_and_visible_less_so() {
+    let surface = surface(cobbles(64, 4));
+    let mut random = Random(9);
+    let mut squares = [0.0_f64; 2];
+    for _ in 0..150 {
+        let center = [0; 2].map(|_| random.within(0.0, 1.0));
+        let angle = random.within(0.0, std::f32::consts::TAU);
+        let across = random.within(0.01, 0.1);
+        let pixel = floor_pixel(center, across, random.within(1.0, 4.0), angle, random.within(0.0, 0.4));
+        let truth = supersampled(&surface, &pixel.footprint, pixel.displacement, 24);
+        for (filter, sum) in [Filter::Horizon, Filter::Visible].into_iter().zip(&mut squares) {
+            let color = invariants::filtered(&surface, &pixel, &base_level(filter));
+            *sum += (0..3).map(|i| (f64::from(color[i]) - truth[i]).powi(2)).sum::<f64>() / 3.0;
+        }
+    }
+    let [horizon, visible] = squares.map(|sum| (sum / 150.0).sqrt());
+    println!("root mean square error: horizon {horizon}, visible {visible}");
+    assert!(horizon < 0.004 && visible > 2.0 * horizon, "horizon {horizon}, visible {visible}");
+}
+
+#[test]
+fn flat_horizon_is_the_gaussian_over_bilinear_texels() {
+    let mut random = Random(10);
+    let (mut worst, mut worst_lines) = (0.0_f64, 0.0_f64);
+    let flat = SurfaceMaps { height: None, ..maps(32, 32, Wrap::Repeat, 8) };
+    let surface = surface(flat);
+    for _ in 0..100 {
+        let center = [0; 2].map(|_| random.within(0.0, 1.0));
+        let (across, aspect) = (random.within(0.005, 0.2), random.within(1.0, 3.0));
+        let pixel = floor_pixel(center, across, aspect, random.within(0.0, 6.3), 0.0);
+        let found = horizon::visible_mean(&surface, &pixel.footprint, [0.0; 2], &base_level(Filter::Horizon), None).0;
+        let error = |expected: [f64; 3]| {
+            (0..3).map(|i| (f64::from(unit(found.color[i])) - expected[i]).abs()).fold(0.0, f64::max)
+        };
+        worst_lines = worst_lines.max(error(reference_lines(&surface, &pixel).mean()));
+        worst = worst.max(error(supersampled(&surface, &pixel.footprint, [0.0; 2], 64)));
+    }
+    println!("flat: {worst_lines} from the reference's lines, {worst} from the integral");
+    assert!(worst_lines < 1e-3 && worst < 0.02, "{worst_lines} {worst}");
+}
+
+/// As Vulkan's conformance tests of anisotropy have it: a grid on a slanted plane, isotropic and anisotropic close, not equal.
+#[test]
+fn anisotropic_is_close_to_isotropic_and_sharper() {
+    let grid = ColorImage::from_fn(128, 128, |x, y| [if (x / 16 + y / 16) % 2 == 0 { 0.0 } else { 1.0 }; 3]);
+    let surface = surface(SurfaceMaps { albedo: Some(grid), ..Default::default() });
+    let (mut sum, mut most) = (0.0, 0.0_f32);
+    for limit in [2.0, 4.0, 8.0, 16.0] {
+        for i in 0..64 {
+            // w from 3.5 to 1 across 128 pixels.
+            let w = 1.0 + 2.5 * i as f32 / 63.0;
+            let pixel = floor_pixel([i as f32 / 64.0, 0.3], w / 128.0, w, 0.0, 0.0);
+            let of = |max_anisotropy: f32| {
+                invariants::filtered(&surface, &pixel, &Settings { max_anisotropy, ..settings(Filter::Ewa) })[0]
+            };
+            let error = (of(limit) - of(1.0)).abs();
+            (sum, most) = (sum + error, most.max(error));
+        }
+    }
+    assert!(sum / 256.0 < 0.05 && most > 0.02, "mean {}, most {most}", sum / 256.0);
+}
+
+/// As WebGPU's conformance tests of anisotropy have it: a checkerboard on a slanted plane, limits of 16 and of 1024.
+#[test]
+fn limits_of_16_and_1024_are_equal_where_the_footprint_is_below() {
+    let checker = ColorImage::from_fn(32, 32, |x, y| [if (x + y) % 2 == 0 { 0.0 } else { 1.0 }; 3]);
+    let surface = surface(SurfaceMaps { albedo: Some(checker), ..Default::default() });
+    for filter in [Filter::Ewa, Filter::Visible, Filter::Horizon] {
+        let mut num_widened = 0;
+        for i in 0..200 {
+            let pixel = floor_pixel([0.1 * i as f32, 0.37 * i as f32], 0.02, 1.0 + 0.07 * i as f32, 1.0, 0.0);
+            let of = |max_anisotropy: f32| {
+                invariants::filtered(&surface, &pixel, &Settings { max_anisotropy, ..settings(filter) })
+            };
+            assert_eq!(of(16.0), of(1024.0), "{filter:?} {i}");
+            num_widened += usize::from(of(1.0) != of(16.0));
+        }
+        assert!(num_widened > 100, "{filter:?}: a limit of 1 changes {num_widened} of 200");
+    }
+}
+
+/// A magnified line pattern: no holes between texels, no steps, no ringing.
+#[test]
+fn magnified_footprints_are_smooth() {
+    let lines = ColorImage::from_fn(16, 16, |x, _| [if x % 4 == 0 { 1.0 } else { 0.0 }; 3]);
+    let surface = surface(SurfaceMaps { albedo: Some(lines), ..Default::default() });
+    for filter in [Filter::Ewa, Filter::Visible, Filter::Horizon] {
+        let step = 1.0 / 512.0;
+        let at = |i: usize| {
+            let pixel = Pixel::new([i as f32 * step, 0.31], [step, 0.0], [0.0, step], [0.0; 2]);
+            invariants::filtered(&surface, &pixel, &settings(filter))[0]
+        };
+        let row: Vec<f32> = (0..512).map(at).collect();
+        // 32 pixels a texel: bilinear interpolation changes by 1/32 a pixel. The ellipse of texel centres has an edge,
+        // where a texel of weight exp(-2) comes in.
+        let most = if filter == Filter::Horizon { 0.04 } else { 0.2 };
+        let steepest = row.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
+        assert!(steepest < most, "{filter:?} changes by {steepest} from pixel to pixel");
+        assert!(row.iter().all(|c| (0.0..=1.0).contains(c)), "{filter:?}");
+        let texel_middle = row[16];
+        assert!(texel_middle > 0.6 && row[16 + 64] < 0.1, "{filter:?} {texel_middle} {}", row[80]);
+    }
+}
