@@ -24,10 +24,10 @@ const FILTERS: [Filter; 8] = [
     Filter::Truth,
 ];
 
-/// A relief floor, a mirrored relief wall that cuts it, and a plain triangle, under two lights.
-fn scene(wrap: Wrap) -> Scene {
+/// A relief floor of `size` texels, a mirrored relief wall that cuts it, and a plain triangle, under two lights.
+fn scene(wrap: Wrap, size: u32) -> Scene {
     let maps = |size, stones| SurfaceMaps { wrap, ..cobbles(size, stones) };
-    let mut scene = floor_scene(Surface::new(maps(64, 4)).expect("valid maps"), 0.5);
+    let mut scene = floor_scene(Surface::new(maps(size, 4)).expect("valid maps"), 0.5);
     let wall = Surface::new(SurfaceMaps { relief_depth: 0.1, ..maps(48, 3) }).expect("valid maps");
     scene.materials[0].specular = Vec3::splat(0.4);
     scene.materials.push(Material {
@@ -57,16 +57,19 @@ fn small(filter: Filter) -> Settings {
     Settings { width: 45, height: 37, filter, samples: 4, texel_budget: 64, ..Settings::default() }
 }
 
+/// A name, what lies beyond the textures' edges, texels a side of the floor's, and settings.
+type Case = (String, Wrap, u32, Settings);
+
 /// Every filter and every option, one frame each.
-fn cases() -> Vec<(String, Wrap, Settings)> {
+fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for filter in FILTERS {
         for (lighting, msaa) in [(Lighting::Unlit, 1), (Lighting::Lit, 4)] {
             let name = format!("{filter:?} {lighting:?} msaa {msaa}");
-            cases.push((name, Wrap::Repeat, Settings { lighting, msaa, ..small(filter) }));
+            cases.push((name, Wrap::Repeat, 64, Settings { lighting, msaa, ..small(filter) }));
         }
     }
-    let mut add = |name: &str, wrap, settings| cases.push((name.into(), wrap, settings));
+    let mut add = |name: &str, wrap, settings| cases.push((name.into(), wrap, 64, settings));
     for filter in [Filter::Visible, Filter::Horizon] {
         add(&format!("{filter:?} mirror"), Wrap::Mirror, small(filter));
         add(&format!("{filter:?} clamp"), Wrap::Clamp, small(filter));
@@ -84,12 +87,15 @@ fn cases() -> Vec<(String, Wrap, Settings)> {
     add("culled, msaa 8", Wrap::Repeat, Settings { cull_back_faces: true, msaa: 8, ..visible });
     let horizon = small(Filter::Horizon);
     add("4 lines", Wrap::Repeat, Settings { lines: 4, ..horizon.clone() });
-    add("64 lines, near field", Wrap::Repeat, Settings { lines: 64, far_field: false, ..horizon });
+    add("64 lines, near field", Wrap::Repeat, Settings { lines: 64, far_field: false, ..horizon.clone() });
+    // Only maps of more than 128 x 128 texels have tables of what is seen from afar.
+    cases.push(("far field".into(), Wrap::Repeat, 200, Settings { far_field_mib: 1, ..horizon.clone() }));
+    cases.push(("far field, mirror".into(), Wrap::Mirror, 130, horizon));
     cases
 }
 
-fn draw(wrap: Wrap, settings: Settings) -> Frame {
-    Renderer::new(scene(wrap), settings).expect("a valid scene").render()
+fn draw(&(_, wrap, size, ref settings): &Case) -> Frame {
+    Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene").render()
 }
 
 /// 64-bit FNV-1a of the frame's bits and of its 8-bit bytes.
@@ -102,8 +108,7 @@ fn hash(frame: &Frame) -> u64 {
 #[test]
 fn frames_have_the_golden_bytes() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/frames.txt");
-    let lines =
-        cases().into_iter().map(|(name, wrap, settings)| format!("{:016x} {name}\n", hash(&draw(wrap, settings))));
+    let lines = cases().into_iter().map(|case| format!("{:016x} {}\n", hash(&draw(&case)), case.0));
     let found: String = lines.collect();
     if std::env::var_os("BASRELIEF_ACCEPT").is_some() {
         std::fs::write(path, &found).expect("the golden file can be written");
@@ -116,8 +121,8 @@ fn frames_have_the_golden_bytes() {
 #[test]
 fn frames_do_not_depend_on_threads_and_tiles() {
     let pools = [1, 2, 7].map(|num| rayon::ThreadPoolBuilder::new().num_threads(num).build().expect("a pool"));
-    for (name, wrap, settings) in cases() {
-        let mut renderer = Renderer::new(scene(wrap), settings.clone()).expect("a valid scene");
+    for (name, wrap, size, settings) in cases() {
+        let mut renderer = Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene");
         let expected = hash(&pools[0].install(|| renderer.render()));
         for (pool, tile_size) in pools.iter().cycle().zip([8, 16, 32, 64, 128, 256]) {
             renderer.set_settings(Settings { tile_size, ..settings.clone() }).expect("valid settings");
@@ -133,8 +138,9 @@ fn frames_of_any_size_do_not_depend_on_threads_and_tiles() {
     for (width, height) in [(1, 1), (2, 1), (1, 7), (8, 8), (9, 17), (31, 33), (65, 3)] {
         for filter in FILTERS {
             let settings = Settings { width, height, ..small(filter) };
-            let expected = draw(Wrap::Repeat, settings.clone());
-            let other = pool.install(|| draw(Wrap::Repeat, Settings { tile_size: 8, ..settings }));
+            let case = |tile_size| (String::new(), Wrap::Repeat, 64, Settings { tile_size, ..settings.clone() });
+            let expected = draw(&case(32));
+            let other = pool.install(|| draw(&case(8)));
             assert!(expected == other, "{filter:?} at {width} x {height}");
         }
     }

@@ -14,7 +14,7 @@ fn settings(filter: Filter) -> Settings {
 }
 
 fn floor() -> Scene {
-    floor_scene(Surface::new(cobbles(512, 8)).expect("valid maps"), 0.5)
+    floor_scene(Surface::new(cobbles(128, 4)).expect("valid maps"), 0.5)
 }
 
 fn draw(settings: Settings) -> Frame {

@@ -31,6 +31,14 @@ impl Pixel {
     }
 }
 
+/// The pixel's ellipse, its centre and the displacement in texels of the base level.
+pub(super) fn on_base_level(surface: &Surface, pixel: &Pixel, settings: &Settings) -> (Ellipse, [[f32; 2]; 2]) {
+    let texels = surface.texels_per_repeat(0);
+    let ellipse = Ellipse::new(&pixel.footprint, texels, Formulas::Meant);
+    let scaled = [pixel.footprint.center, pixel.displacement].map(|p| [p[0] * texels[0], p[1] * texels[1]]);
+    (ellipse.widened(settings.max_anisotropy, Formulas::Meant), scaled)
+}
+
 /// The pixel's colour by the filter of the settings, in near field; 1 is the surface's `color_scale`. The filters that know no footprint take the texels at its
 /// centre; `Parallax` and `Truth`, which are means over the screen, count as `Bilinear`.
 #[must_use]

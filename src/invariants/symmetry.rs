@@ -3,9 +3,14 @@
 //! Sums run over the same texels in another order, so colours agree up to rounding; but rounding also decides which texels
 //! on the very edge of an ellipse belong to it, so the callers state the tolerance.
 
+use super::pixel::on_base_level;
 use super::{Checked, Pixel, difference, ensure, filtered};
-use crate::settings::Settings;
+use crate::filter::TexelSet;
+use crate::filter::visible::{Occlusion, remove_hidden};
+use crate::reference::{RAY_TIE, ray_margin};
+use crate::settings::{Filter, Settings, Visibility};
 use crate::texture::{ColorImage, HeightImage, Surface, SurfaceMaps};
+use std::collections::BTreeSet;
 
 /// The same pixel of two textures.
 fn agree(maps: [SurfaceMaps; 2], pixels: [&Pixel; 2], settings: &Settings, tolerance: f32) -> Checked {
@@ -87,8 +92,9 @@ pub fn mirrored(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings, toleranc
     agree([maps.clone(), mirrored], [pixel, &there], settings, tolerance)
 }
 
-/// Relief of half the height under a view of twice the slope hides the same and gives the same colour. Heights must be 2
-/// more than a multiple of 4, so that half of their depth is stored exactly, and maps of one size.
+/// Relief of half the height under a view of twice the slope hides the same texels, up to ties, and the horizon gives the
+/// same colour. Heights must be 2 more than a multiple of 4, so that half of their depth is stored exactly, and maps of
+/// one size.
 ///
 /// # Errors
 /// Says what broke.
@@ -99,5 +105,18 @@ pub fn same_when_scaled(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings, 
     }
     let mut slanted = *pixel;
     slanted.displacement = slanted.displacement.map(|d| d * 2.0);
-    agree([maps.clone(), shallow], [pixel, &slanted], settings, tolerance)
+    let visible = |maps: &SurfaceMaps, pixel: &Pixel| {
+        let surface = Surface::new(maps.clone()).map_err(|e| e.to_string())?;
+        let (ellipse, [center, displacement]) = on_base_level(&surface, pixel, settings);
+        let mut set = TexelSet::default();
+        set.fill_ellipse(&ellipse, center);
+        remove_hidden(&mut set, &Occlusion::new(&surface.levels[0], displacement), Visibility::Exact);
+        let margin = move |texel| ray_margin(&surface.levels[0], texel, displacement.map(f64::from));
+        Ok::<_, String>((set.iter().collect::<BTreeSet<_>>(), margin))
+    };
+    let ((deep, margin), (flat, _)) = (visible(maps, pixel)?, visible(&shallow, &slanted)?);
+    let differs = deep.symmetric_difference(&flat).find(|texel| margin(**texel).abs() > 2.0 * RAY_TIE);
+    ensure(differs.is_none(), || format!("{differs:?} is visible in one of the two"))?;
+    let settings = Settings { filter: Filter::Horizon, ..settings.clone() };
+    agree([maps.clone(), shallow], [pixel, &slanted], &settings, tolerance)
 }

@@ -1,9 +1,9 @@
 //! The weights of the floating horizon, seen through textures in which one texel at a time is lit.
 
+use super::pixel::on_base_level;
 use super::{Checked, Pixel, ensure, filtered};
-use crate::filter::Ellipse;
 use crate::reference::{Conic, Lines, RAY_TIE, ray_margin, texels};
-use crate::settings::{Filter, Formulas, Settings};
+use crate::settings::{Filter, Settings};
 use crate::texture::{ColorImage, Surface, SurfaceMaps};
 
 /// How far the weights of all texels may be from adding up to 1: a mip level rounds each texel.
@@ -37,11 +37,9 @@ pub fn horizon_weights(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings) -
 /// # Errors
 /// Says what broke.
 pub fn records_are_visible(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Checked {
-    let (level, scale) = (&surface.levels[0], surface.texels_per_repeat(0).map(f64::from));
-    let ellipse = Ellipse::new(&pixel.footprint, surface.texels_per_repeat(0), Formulas::Meant);
-    let conic = Conic::from(&ellipse.widened(settings.max_anisotropy, Formulas::Meant));
-    let scaled = |p: [f32; 2]| [0, 1].map(|i| f64::from(p[i]) * scale[i]);
-    let [center, displacement] = [pixel.footprint.center, pixel.displacement].map(scaled);
+    let level = &surface.levels[0];
+    let (ellipse, [center, displacement]) = on_base_level(surface, pixel, settings);
+    let (conic, center, displacement) = (Conic::from(&ellipse), center.map(f64::from), displacement.map(f64::from));
     for (texel, _) in texels(&conic, center, 0.0) {
         let margin = ray_margin(level, texel, displacement);
         // One line, through the texel's centre, in a footprint that reaches from before its place to behind it.
