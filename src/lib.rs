@@ -34,8 +34,25 @@
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
-//! [`scene::load`] reads OBJ files, [`scene::builtin`] makes the scene of the README, [`Renderer`] keeps its tables between
-//! frames, and [`metrics::compare`] measures two pictures.
+//! Several frames of one scene, here of the built-in one:
+//!
+//! ```
+//! # std::env::set_current_dir(std::env::temp_dir()).unwrap();
+//! use basrelief::{Camera, Renderer, Settings, scene};
+//!
+//! let settings = Settings { width: 160, height: 90, ..Settings::default() };
+//! let mut renderer = Renderer::new(scene::builtin(), settings)?;
+//! let camera = renderer.scene().camera;
+//! for step in 0..2 {
+//!     let walked = (camera.target - camera.eye) * 0.05 * step as f32;
+//!     renderer.set_camera(Camera { eye: camera.eye + walked, ..camera })?;
+//!     renderer.render().save(format!("walk{step}.png"))?;
+//! }
+//! # Ok::<(), basrelief::Error>(())
+//! ```
+//!
+//! [`scene::load`] reads OBJ files, [`scene::builtin`] makes the scene of the README, [`Renderer`] keeps tables and buffers
+//! between frames, and [`metrics::compare`] measures two pictures.
 //!
 //! # The way of a pixel, one direction only
 //!
