@@ -91,13 +91,13 @@ impl TexelSet {
 
 /// The columns of eight neighbouring texels.
 #[must_use]
-pub fn lane_columns(x: i32) -> TexelLanes {
+pub(super) fn lane_columns(x: i32) -> TexelLanes {
     TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + x as f32
 }
 
 /// `r^2 = (A U^2 + B U V + C V^2) / F` along a row of constant V.
 #[derive(Clone, Copy, Debug)]
-pub struct RowQuadric {
+pub(super) struct RowQuadric {
     a: f32,
     bv: f32,
     cvv: f32,
@@ -106,14 +106,14 @@ pub struct RowQuadric {
 impl RowQuadric {
     /// The quadric of the row at V.
     #[must_use]
-    pub fn new(ellipse: &Ellipse, v: f32) -> Self {
+    pub(super) fn new(ellipse: &Ellipse, v: f32) -> Self {
         let inverse_f = 1.0 / ellipse.f;
         Self { a: ellipse.a * inverse_f, bv: ellipse.b * v * inverse_f, cvv: ellipse.c * v * v * inverse_f }
     }
 
     /// `r^2` at eight places U.
     #[must_use]
-    pub fn at(&self, u: TexelLanes) -> TexelLanes {
+    pub(super) fn at(&self, u: TexelLanes) -> TexelLanes {
         (u * self.a + self.bv) * u + self.cvv
     }
 }
