@@ -68,7 +68,7 @@ pub struct Settings {
     pub width: u32,
     /// Height of the frame in pixels, 1 to 32768. Default: 720.
     pub height: u32,
-    /// Which texels make up a pixel's colour. Default: [`Filter::Visible`].
+    /// Which texels make up a pixel's colour. Default: [`Filter::Horizon`].
     pub filter: Filter,
     /// How [`Filter::Visible`] finds hidden texels. Default: [`Visibility::Exact`].
     pub visibility: Visibility,
@@ -85,7 +85,7 @@ pub struct Settings {
     pub max_anisotropy: f32,
     /// Rays a pixel of `Truth` and `Parallax`, 1 to 65536. Default: 64.
     pub samples: u32,
-    /// Most parallel lines that `Horizon` sweeps through a footprint, 2 to 64: more is finer and slower. Default: 16.
+    /// Most texels across a footprint's shorter axis that `Horizon` sweeps, in as many lines, 2 to 64; picks the mip level: more is finer and slower. Default: 10.
     pub lines: u32,
     /// Whether `Horizon` uses tables of the seen colour for distant footprints. Default: `true`.
     pub far_field: bool,
@@ -106,7 +106,7 @@ impl Default for Settings {
         Self {
             width: 1280,
             height: 720,
-            filter: Filter::Visible,
+            filter: Filter::Horizon,
             visibility: Visibility::Exact,
             parallax: true,
             derivatives: Derivatives::Relief,
@@ -114,7 +114,7 @@ impl Default for Settings {
             texel_budget: 256,
             max_anisotropy: 64.0,
             samples: 64,
-            lines: 16,
+            lines: 10,
             far_field: true,
             far_field_mib: 32,
             lighting: Lighting::Unlit,

@@ -28,7 +28,7 @@ fn maps(width: u32, height: u32, wrap: Wrap, seed: u64) -> SurfaceMaps {
     let albedo = ColorImage::from_fn(width, height, |_, _| [0; 3].map(|_| random.within(0.0, 1.0)));
     let heights = HeightImage::from_fn(width, height, |_, _| {
         let h = random.within(1.0 - roughness, 1.0);
-        if seed % 2 == 0 { h } else { (h * 4.0).round() / 4.0 }
+        if seed.is_multiple_of(2) { h } else { (h * 4.0).round() / 4.0 }
     });
     SurfaceMaps { albedo: Some(albedo), height: Some(heights), wrap, relief_depth: 0.1, ..Default::default() }
 }

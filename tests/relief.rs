@@ -39,18 +39,18 @@ fn check(surface: &Surface, seed: u64, longest: f32) {
         let mut lanes = || PixelLanes::new([0.0; 8].map(|_| random.within(-1.0, 1.0)));
         let (base, reach) = ([lanes() * 3.0, lanes() * 3.0], [lanes() * longest, lanes() * longest]);
         let depth = march(&field, &base, &reach).to_array();
-        for lane in 0..8 {
+        for (lane, &found) in depth.iter().enumerate() {
             let [b, r] = [base, reach].map(|v| v.map(|lanes| lanes.to_array()[lane]));
             let expected = dense_march(&field, b, r);
             let texels = (0..2).map(|i| (r[i] * field.texels_per_repeat[i]).abs()).fold(0.0, f32::max);
-            let found = f64::from(depth[lane]);
+            let found = f64::from(found);
             let error = (found - expected).abs() * f64::from(texels);
             // Where the ray grazes the relief, rounding decides whether it is hit there or further on.
             let [u, v] =
                 [0, 1].map(|i| (f64::from(b[i]) + f64::from(r[i]) * found) * f64::from(field.texels_per_repeat[i]));
             let grazes = found < expected && (1.0 - found - field.height_at(u, v)).abs() < 1e-4;
             num_grazing += usize::from(error >= 0.05 && grazes);
-            assert!(error < 0.05 || grazes, "{error} texels off: {} for {expected}, from {b:?} by {r:?}", depth[lane]);
+            assert!(error < 0.05 || grazes, "{error} texels off: {} for {expected}, from {b:?} by {r:?}", found);
         }
     }
     assert!(num_grazing < 5, "{num_grazing} of 1600 rays");

@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn each_default_has_a_word() {
         let settings = Settings::default();
-        assert_eq!(word(FILTERS, &settings.filter), "visible");
+        assert_eq!(word(FILTERS, &settings.filter), "horizon");
         assert_eq!(word(VISIBILITIES, &settings.visibility), "exact");
         assert_eq!(word(MSAA, &settings.msaa), "1");
         assert_eq!(word(WRAPS, &Wrap::default()), "repeat");

@@ -49,7 +49,9 @@ pub fn visible_mean(
     settings: &Settings,
     lights: Option<&LocalLights>,
 ) -> (Filtered, u64) {
-    swept_mean(surface, footprint, displacement, (settings, settings.lines as f32), lights)
+    // Under lights no table helps where a level loses what hides behind fine ridges: take one level finer instead.
+    let lines = if lights.is_some() { 2 * settings.lines } else { settings.lines };
+    swept_mean(surface, footprint, displacement, (settings, lines as f32), lights)
 }
 
 /// As [`visible_mean`], from the tables of the seen colour where the footprint is large.

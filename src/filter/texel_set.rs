@@ -1,4 +1,4 @@
-//! A set of texels of one mip level, row by row: the paper's T, T_vis, and what lies between.
+//! A set of texels of one mip level, row by row: the paper's T, `T_vis`, and what lies between.
 //!
 //! Rows hold runs of eight neighbouring texels, a bit each, so that membership and visibility are decided a batch at a
 //! time and the sums visit only batches that hold a texel. A texel's place is its column and row in the endless pattern.
@@ -91,7 +91,7 @@ impl TexelSet {
 
 /// The columns of eight neighbouring texels.
 #[must_use]
-pub(super) fn lane_columns(x: i32) -> TexelLanes {
+pub(crate) fn lane_columns(x: i32) -> TexelLanes {
     TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + x as f32
 }
 

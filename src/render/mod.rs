@@ -7,19 +7,17 @@
 //! 4. `raster` adds the colours up to pixels.
 
 mod quads;
+mod tables;
 
 use crate::error::Result;
-use crate::filter::{FarField, parallax, truth};
 use crate::frame::Frame;
 use crate::geometry::Geometry;
 use crate::raster::Rasterizer;
-use crate::relief::HeightField;
-use crate::scene::{Camera, Material, Scene};
-use crate::settings::{Filter, Lighting, Settings};
-use crate::texture::Surface;
+use crate::scene::{Camera, Scene};
+use crate::settings::Settings;
 use quads::QuadShader;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use tables::Tables;
 
 /// What drawing a frame took. Times are of the whole frame for `geometry_ms`, and of all threads together for the others.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,12 +45,7 @@ pub struct Stats {
 pub struct Renderer {
     scene: Scene,
     settings: Settings,
-    /// The height field of each material that has relief; shared where the surface is.
-    fields: Vec<Option<Arc<HeightField>>>,
-    /// The tables of the same materials for distant footprints; empty until they are needed.
-    far_fields: Vec<Option<Arc<FarField>>>,
-    kernel: truth::Kernel,
-    offsets: Vec<[f32; 2]>,
+    tables: Tables,
     geometry: Geometry,
     rasterizer: Rasterizer,
 }
@@ -64,15 +57,11 @@ impl Renderer {
     /// Names the first setting or part of the scene that is not valid.
     pub fn new(scene: Scene, settings: Settings) -> Result<Self> {
         scene.validate()?;
-        let fields = per_surface(&scene, |surface| Some(HeightField::new(surface)));
-        let far_fields = vec![None; scene.materials.len()];
+        let tables = Tables::new(&scene);
         let mut renderer = Self {
             scene,
             settings: Settings::default(),
-            fields,
-            far_fields,
-            kernel: truth::Kernel::new(1),
-            offsets: Vec::new(),
+            tables,
             geometry: Geometry::default(),
             rasterizer: Rasterizer::default(),
         };
@@ -86,19 +75,7 @@ impl Renderer {
     /// Names the first setting that is out of its range.
     pub fn set_settings(&mut self, settings: Settings) -> Result<()> {
         settings.validate()?;
-        if settings.filter == Filter::Truth {
-            self.kernel = truth::Kernel::new(settings.samples);
-        }
-        self.offsets = parallax::offsets(settings.samples);
-        let wants_far =
-            settings.filter == Filter::Horizon && settings.far_field && settings.lighting == Lighting::Unlit;
-        let has_far =
-            self.far_fields.iter().any(Option::is_some) && settings.far_field_mib == self.settings.far_field_mib;
-        if !wants_far {
-            self.far_fields.fill(None);
-        } else if !has_far {
-            self.far_fields = per_surface(&self.scene, |surface| FarField::new(surface, &settings));
-        }
+        self.tables.update(&self.scene, &settings);
         self.settings = settings;
         Ok(())
     }
@@ -132,11 +109,11 @@ impl Renderer {
 
     /// Draws a frame and says what it took; `clock` gives milliseconds, since the library reads no clock of its own.
     pub fn render_timed(&mut self, clock: &(dyn Fn() -> f64 + Sync)) -> (Frame, Stats) {
-        let Self { scene, settings, fields, far_fields, kernel, offsets, geometry, rasterizer } = self;
+        let Self { scene, settings, tables, geometry, rasterizer } = self;
         let start = clock();
         geometry.project(scene, settings);
         let projected = clock();
-        let shader = QuadShader::new(scene, settings, (fields, far_fields), (kernel, offsets));
+        let shader = QuadShader::new(scene, settings, tables);
         let shade_us = AtomicU64::new(0);
         let shade = |pair: &crate::raster::QuadPair| {
             let before = clock();
@@ -160,21 +137,6 @@ impl Renderer {
         };
         (frame, stats)
     }
-}
-
-/// What is made of each material's surface, if that has relief: one per distinct surface.
-fn per_surface<T>(scene: &Scene, make: impl Fn(&Surface) -> Option<T>) -> Vec<Option<Arc<T>>> {
-    let mut made: Vec<(Arc<Surface>, Option<Arc<T>>)> = Vec::new();
-    let mut of = |surface: &Arc<Surface>| {
-        if let Some((_, table)) = made.iter().find(|(other, _)| Arc::ptr_eq(other, surface)) {
-            return table.clone();
-        }
-        let table = make(surface).map(Arc::new);
-        made.push((surface.clone(), table.clone()));
-        table
-    };
-    let relief = |material: &Material| material.surface.clone().filter(|surface| surface.relief_depth > 0.0);
-    scene.materials.iter().map(|material| relief(material).and_then(|surface| of(&surface))).collect()
 }
 
 /// Draws one frame.

@@ -1,6 +1,7 @@
 //! The colour of two quads: view slope, hits, footprints, texels, light.
 
-use crate::filter::{self, FarField, Filtered, TexelSet, horizon, isotropic, parallax, truth};
+use super::tables::Tables;
+use crate::filter::{self, Filtered, TexelSet, horizon, isotropic, parallax, truth};
 use crate::raster::{LitPlanes, QuadPair};
 use crate::relief::{HeightField, displacement, march};
 use crate::scene::{Material, Scene};
@@ -9,17 +10,13 @@ use crate::shade::{LocalLights, SurfacePoint};
 use crate::simd::PixelLanes;
 use crate::texture::{FULL_F32, Surface};
 use glam::Vec3;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Shades quads of a frame.
 pub(super) struct QuadShader<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
-    fields: &'a [Option<Arc<HeightField>>],
-    far_fields: &'a [Option<Arc<FarField>>],
-    kernel: &'a truth::Kernel,
-    offsets: &'a [[f32; 2]],
+    tables: &'a Tables,
     texels: [AtomicU64; 2],
 }
 
@@ -32,13 +29,8 @@ struct Ground<'a> {
 }
 
 impl<'a> QuadShader<'a> {
-    pub(super) fn new(
-        scene: &'a Scene,
-        settings: &'a Settings,
-        (fields, far_fields): (&'a [Option<Arc<HeightField>>], &'a [Option<Arc<FarField>>]),
-        (kernel, offsets): (&'a truth::Kernel, &'a [[f32; 2]]),
-    ) -> Self {
-        Self { scene, settings, fields, far_fields, kernel, offsets, texels: Default::default() }
+    pub(super) fn new(scene: &'a Scene, settings: &'a Settings, tables: &'a Tables) -> Self {
+        Self { scene, settings, tables, texels: Default::default() }
     }
 
     /// Texels tested and texels averaged so far.
@@ -52,7 +44,7 @@ impl<'a> QuadShader<'a> {
         let colors = match &material.surface {
             None => each_covered(pair, |lane| self.plain(pair, material, lane)),
             Some(surface) => {
-                let field = self.fields[pair.material].as_deref().filter(|_| self.settings.parallax);
+                let field = self.tables.fields[pair.material].as_deref().filter(|_| self.settings.parallax);
                 self.textured(&Ground { pair, material, surface, field })
             }
         };
@@ -117,7 +109,7 @@ impl<'a> QuadShader<'a> {
             let reach = reach.map(|lanes| lanes.as_array()[lane]);
             let lights = self.lights_at(pair, lane, pixel_center(pair, lane));
             // The tables hold unlit colour.
-            let far = self.far_fields[pair.material].as_deref().filter(|_| lights.is_none() && field.is_some());
+            let far = self.tables.far_fields[pair.material].as_deref().filter(|_| lights.is_none() && field.is_some());
             let (texel, rows) = match far {
                 Some(far) => horizon::near_or_far_mean(surface, far, &footprint, reach, self.settings),
                 None => horizon::visible_mean(surface, &footprint, reach, self.settings, lights.as_ref()),
@@ -140,14 +132,14 @@ impl<'a> QuadShader<'a> {
             let footprint = differences.footprint(&pair.uv, lane);
             let size = parallax::texel_size(surface, &footprint, self.settings.samples);
             let [x, y] = pixel_center(pair, lane);
-            let sum = self.offsets.iter().fold(Vec3::ZERO, |sum, offset| {
+            let sum = self.tables.offsets.iter().fold(Vec3::ZERO, |sum, offset| {
                 let (x, y) = (PixelLanes::splat(x + offset[0]), PixelLanes::splat(y + offset[1]));
                 let (uv, view) = pair.planes[lane / 4].at(x, y);
                 let reach = displacement(&view, depth).map(|lanes| lanes.as_array()[0]);
                 let base = uv.map(|lanes| crate::relief::finite(lanes).as_array()[0]);
                 sum + self.lit(ground, lane, &parallax::trace(surface, base, reach, size))
             });
-            sum / self.offsets.len() as f32
+            sum / self.tables.offsets.len() as f32
         })
     }
 
@@ -158,7 +150,7 @@ impl<'a> QuadShader<'a> {
         let [center_x, center_y] = pixel_center(pair, lane);
         let depth = field.map_or(0.0, |_| surface.relief_depth);
         let (mut sum, mut num) = (Vec3::ZERO, 0.0);
-        for [dx, dy, counts] in &self.kernel.groups {
+        for [dx, dy, counts] in &self.tables.kernel.groups {
             let (x, y) = (*dx + center_x, *dy + center_y);
             let (uv, view) = planes.at(x, y);
             let reach = displacement(&view, depth);

@@ -12,7 +12,7 @@ use crate::texture::{FULL_F32, Level, Surface, Wrap, wrap_index};
 use rayon::prelude::*;
 
 /// Greatest root-mean-square difference, of the surface's colour scale, that a level may make in what is seen.
-const MOST_LOSS: f32 = 0.012;
+const MOST_LOSS: f32 = 0.02;
 
 /// The same for the level that tables are built from.
 const MOST_SOURCE_LOSS: f32 = 0.02;

@@ -1,0 +1,71 @@
+//! What is made before the first frame: height fields, far-field tables, sample positions.
+
+use crate::filter::{FarField, parallax, truth};
+use crate::relief::HeightField;
+use crate::scene::{Material, Scene};
+use crate::settings::{Filter, Lighting, Settings};
+use crate::texture::Surface;
+use std::sync::Arc;
+
+/// What every frame of a scene needs besides the scene.
+#[derive(Debug)]
+pub(super) struct Tables {
+    /// The height field of each material that has relief; shared where the surface is.
+    pub(super) fields: Vec<Option<Arc<HeightField>>>,
+    /// The tables of the same materials for distant footprints; `None` while they are not needed.
+    pub(super) far_fields: Vec<Option<Arc<FarField>>>,
+    /// Sample offsets of the truth.
+    pub(super) kernel: truth::Kernel,
+    /// Sample offsets of common practice.
+    pub(super) offsets: Vec<[f32; 2]>,
+    /// Memory that `far_fields` were built for.
+    far_field_mib: u32,
+}
+
+impl Tables {
+    /// Tables that do not depend on the settings.
+    pub(super) fn new(scene: &Scene) -> Self {
+        Self {
+            fields: per_surface(scene, |surface| Some(HeightField::new(surface))),
+            far_fields: vec![None; scene.materials.len()],
+            kernel: truth::Kernel::new(1),
+            offsets: Vec::new(),
+            far_field_mib: 0,
+        }
+    }
+
+    /// Makes what the settings need and is not there.
+    pub(super) fn update(&mut self, scene: &Scene, settings: &Settings) {
+        match settings.filter {
+            Filter::Truth => self.kernel = truth::Kernel::new(settings.samples),
+            Filter::Parallax => self.offsets = parallax::offsets(settings.samples),
+            _ => {}
+        }
+        let is_needed = settings.filter == Filter::Horizon
+            && settings.parallax
+            && settings.far_field
+            && settings.lighting == Lighting::Unlit;
+        if !is_needed {
+            self.far_fields.fill(None);
+            self.far_field_mib = 0;
+        } else if self.far_field_mib != settings.far_field_mib {
+            self.far_fields = per_surface(scene, |surface| FarField::new(surface, settings));
+            self.far_field_mib = settings.far_field_mib;
+        }
+    }
+}
+
+/// What is made of each material's surface, if that has relief: one per distinct surface.
+fn per_surface<T>(scene: &Scene, make: impl Fn(&Surface) -> Option<T>) -> Vec<Option<Arc<T>>> {
+    let mut made: Vec<(Arc<Surface>, Option<Arc<T>>)> = Vec::new();
+    let mut of = |surface: &Arc<Surface>| {
+        if let Some((_, table)) = made.iter().find(|(other, _)| Arc::ptr_eq(other, surface)) {
+            return table.clone();
+        }
+        let table = make(surface).map(Arc::new);
+        made.push((surface.clone(), table.clone()));
+        table
+    };
+    let relief = |material: &Material| material.surface.clone().filter(|surface| surface.relief_depth > 0.0);
+    scene.materials.iter().map(|material| relief(material).and_then(|surface| of(&surface))).collect()
+}
