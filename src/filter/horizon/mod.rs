@@ -58,9 +58,9 @@ const MOST_BINS: f32 = 256.0;
 const MOST_RATIO: f32 = 2.25;
 
 /// Bins along the shortest ellipse of a patch: of a picture, of a picture with lights, and where one pixel is asked for.
-pub const PICTURE_BINS: f32 = 12.0;
+pub const PICTURE_BINS: f32 = 6.0;
 /// As [`PICTURE_BINS`], under lights, which are asked for each bin.
-pub const LIT_BINS: f32 = 24.0;
+pub const LIT_BINS: f32 = 16.0;
 const PIXEL_BINS: f32 = 128.0;
 
 /// Buffers of sweeps, kept between them.
@@ -153,7 +153,7 @@ impl Patches<'_> {
         let extent = Extent::of(kernels, frame.depth);
         let depth = frame.greatest_depth(extent.xi);
         let num_rows = extent.q[1] * (1.0 + frame.growth.max(0.0)) + depth - extent.q[0];
-        let step = extent.half_height * (2.0 / std::env::var("NB").map_or(self.num_bins, |s| s.parse().unwrap()));
+        let step = extent.half_height * (2.0 / self.num_bins);
         let is_wasteful = num_rows * (extent.xi[1] - extent.xi[0]) > extent.area;
         if picks.len() > 1 && (is_wasteful || extent.q[1] - extent.q[0] > step * MOST_BINS) {
             return None;

@@ -7,11 +7,14 @@
 use super::frame::Frame;
 use super::kernel::Kernel;
 use crate::filter::unpack_normals;
-use crate::simd::{Blend, TexelLanes, as_unsigned, high_half, low_half, u32x8};
+use crate::simd::{Blend, TexelLanes, as_unsigned, high_half, i32x8, lanes, low_half, mask, u32x8};
 use crate::texture::{FULL_F32, Level};
 
 /// Most lines of a grid.
 pub(super) const MOST_LINES: usize = 64;
+
+/// Most rows that are read before what they show is looked at.
+const READ_AHEAD: usize = 32;
 
 /// A line vector may begin at any line of the grid.
 const WIDTH: usize = MOST_LINES + 8;
@@ -87,20 +90,25 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let lines = Lines::new(grid, group * 8);
         let [start, end] = [first_bin, end_bin].map(|bin| grid.begin + bin as f32 * grid.step);
         let mut walk = Walk::<CHANNELS>::new(grid, group * 8, [first_bin, end_bin]);
-        let mut row = lines.row_before(start);
-        let mut last = lines.texels::<CHANNELS>(row);
-        let mut num_rows = 1;
+        let first_row = lines.row_before(start);
         // The deepest relief of the last row is seen behind all bins.
-        let last_row = row + lines.rows_between(start, end);
-        while walk.num_lines > 0 && row < last_row {
-            row += 1;
-            let next = lines.texels::<CHANNELS>(row);
-            walk.pass(&last, &next, &mut self.bins);
-            last = next;
-            num_rows += 1;
+        let end_row = first_row + lines.rows_between(start, end);
+        let mut last = lines.texels::<CHANNELS>(first_row);
+        let mut row = first_row + 1;
+        // Rows are read ahead, so that no branch on what they show waits for memory. None of the first ones can be the last.
+        let mut read = [last; READ_AHEAD];
+        let mut num_read = ((end - start) as usize).clamp(1, READ_AHEAD);
+        while !walk.is_done && row < end_row {
+            read[..num_read].iter_mut().zip(row..).for_each(|(read, row)| *read = lines.texels::<CHANNELS>(row));
+            for next in &read[..num_read] {
+                walk.pass(&last, next, &mut self.bins);
+                last = *next;
+            }
+            row += num_read as i32;
+            num_read = READ_AHEAD / 4;
         }
         walk.finish(&last, &mut self.bins);
-        num_rows
+        (row - first_row) as u64
     }
 }
 
@@ -111,11 +119,11 @@ struct Walk<const CHANNELS: usize> {
     bin_end: TexelLanes,
     /// Colour times length seen in the bin.
     sums: [TexelLanes; CHANNELS],
-    bins: [usize; 8],
-    /// The first line's place in a row of the profile, the bin where lines end, and how many have not.
+    bins: i32x8,
+    /// The first line's place in a row of the profile, the bin where lines end, and whether all have.
     at: usize,
-    end_bin: usize,
-    num_lines: usize,
+    end_bin: i32,
+    is_done: bool,
     step: f32,
     inverse_step: f32,
 }
@@ -123,18 +131,20 @@ struct Walk<const CHANNELS: usize> {
 impl<const CHANNELS: usize> Walk<CHANNELS> {
     fn new(grid: &Grid, at: usize, [first_bin, end_bin]: [usize; 2]) -> Self {
         let start = grid.begin + first_bin as f32 * grid.step;
+        // Lines beyond the grid's last see nothing.
         let num_lines = (grid.num_lines - at).min(8);
-        let mut bin_end = [f32::MAX; 8];
+        let (mut bin_end, mut bins) = ([f32::MAX; 8], [end_bin as i32; 8]);
         bin_end[..num_lines].fill(start + grid.step);
+        bins[..num_lines].fill(first_bin as i32);
         Self {
             // No relief of the first row is seen beyond it.
             record: TexelLanes::splat(start),
             bin_end: TexelLanes::new(bin_end),
             sums: [TexelLanes::ZERO; CHANNELS],
-            bins: [first_bin; 8],
+            bins: i32x8::new(bins),
             at,
-            end_bin,
-            num_lines,
+            end_bin: end_bin as i32,
+            is_done: false,
             step: grid.step,
             inverse_step: 1.0 / grid.step,
         }
@@ -162,34 +172,37 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
         }
     }
 
-    /// Writes the bins of the lines that have passed their end.
+    /// Writes the bins of the lines that have passed their end: neighbours that pass together are in the same bin mostly.
     #[inline(always)]
     fn write(&mut self, is_full: TexelLanes, bins: &mut [[Row; CHANNELS]]) {
-        let means = self.sums.map(|sum| (sum * self.inverse_step).to_array());
+        let means = self.sums.map(|sum| sum * self.inverse_step);
         self.sums = self.sums.map(|sum| sum & !is_full);
-        let mut bin_end = (self.bin_end + (is_full & TexelLanes::splat(self.step))).to_array();
-        let mut left = is_full.to_bitmask();
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize & 7;
-            left &= left - 1;
-            let bin = &mut bins[self.bins[lane]];
-            (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = means[i][lane]);
-            self.bins[lane] += 1;
-            if self.bins[lane] == self.end_bin {
-                bin_end[lane] = f32::MAX;
-                self.num_lines -= 1;
+        let mut left = is_full;
+        let mut bits = left.to_bitmask();
+        while bits != 0 {
+            let number = self.bins.as_array()[bits.trailing_zeros() as usize & 7];
+            let is_same = lanes(self.bins.simd_eq(i32x8::splat(number))) & left;
+            let bin = &mut bins[number as usize];
+            for i in 0..CHANNELS {
+                let row: &mut [f32; 8] = (&mut bin[i][self.at..self.at + 8]).try_into().expect("a slice of eight");
+                *row = is_same.select(means[i], TexelLanes::new(*row)).to_array();
             }
+            left &= !is_same;
+            bits = left.to_bitmask();
         }
-        self.bin_end = TexelLanes::new(bin_end);
+        self.bins -= mask(is_full);
+        let is_done = lanes(self.bins.simd_ge(i32x8::splat(self.end_bin)));
+        self.bin_end = is_done.select(TexelLanes::splat(f32::MAX), self.bin_end + (is_full & TexelLanes::splat(self.step)));
+        self.is_done = is_done.all();
     }
 
     /// Gives bins that rounding has left open the last colour.
     fn finish(&mut self, last: &Texels<CHANNELS>, bins: &mut [[Row; CHANNELS]]) {
-        if self.num_lines == 0 {
+        if self.is_done {
             return;
         }
-        for lane in (0..8).filter(|lane| self.bin_end.as_array()[*lane] < f32::MAX) {
-            for bin in &mut bins[self.bins[lane]..self.end_bin] {
+        for lane in 0..8 {
+            for bin in &mut bins[self.bins.as_array()[lane] as usize..self.end_bin as usize] {
                 (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = last.values[i].as_array()[lane]);
             }
         }
