@@ -25,7 +25,7 @@ use crate::texture::{Level, Surface};
 const FLAT: f32 = 1.0 / 64.0;
 
 /// How far, in radii of its ellipse and squared, a pixel's displacement may be from what the lines take it for.
-const MOST_MISFIT: f32 = 0.02;
+const MOST_MISFIT: f32 = 0.1;
 
 /// Least and greatest distance between lines over that in the middle of the patch.
 const SPREAD: [f32; 2] = [0.6, 1.6];

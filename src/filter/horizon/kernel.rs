@@ -26,7 +26,7 @@ fn integral(z: TexelLanes) -> TexelLanes {
 }
 
 /// Weighted sums.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Totals {
     weight: TexelLanes,
     color: [TexelLanes; 3],

@@ -31,7 +31,7 @@ use crate::settings::Settings;
 use crate::shade::LocalLights;
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
-use frame::{Frame, Kernels, means};
+use frame::{Frame, means};
 use kernel::{Kernel, Totals};
 use pixels::Conics;
 use sweep::{Grid, MOST_LINES, Profile};
@@ -68,6 +68,9 @@ const PIXEL_BINS: f32 = 128.0;
 pub struct Scratch {
     unlit: Profile<3>,
     lit: Profile<6>,
+    conics: Vec<Conics>,
+    kernels: Vec<Kernel>,
+    totals: Vec<Totals>,
 }
 
 /// The mean of the visible texels of a footprint whose centre is the base coordinate, and the number of rows swept. `lights` are asked per visible texel.
@@ -114,7 +117,7 @@ struct Extent {
 }
 
 impl Patches<'_> {
-    /// The means of the picked pixels (vector times 8 plus lane), in their order, into `found`. With `lights`, one a pick,
+    /// The means of the picked pixels (vector times 8 plus lane, ascending), into `found`. With `lights`, one a pick,
     /// they hold diffuse light. Returns the number of rows swept, eight lines each.
     pub fn means(&self, picks: &[u8], lights: &[LocalLights], scratch: &mut Scratch, found: &mut [Filtered]) -> u64 {
         if picks.is_empty() {
@@ -138,18 +141,24 @@ impl Patches<'_> {
         scratch: &mut Scratch,
         found: &mut [Filtered],
     ) -> Option<u64> {
-        let picked = masks(picks);
-        let (index, middle) = self.choose_level(picks, &picked, !lights.is_empty())?;
+        let Scratch { unlit, lit, conics, kernels, totals } = scratch;
+        // Picks ascend: only these vectors hold any.
+        let first_vector = usize::from(picks[0] / 8);
+        let pixels = &self.pixels[first_vector..=usize::from(picks[picks.len() - 1] / 8)];
+        let picked = &masks(picks, first_vector)[..pixels.len()];
+        let (index, middle) = self.choose_level(pixels, picked, picks.len(), !lights.is_empty())?;
         let texels = self.surface.texels_per_repeat(index);
-        let conics = self.conics(texels);
-        let first = usize::from(picks[0]);
-        let is_long_along_u =
-            conics[first / 8].a.as_array()[first % 8] < conics[first / 8].c.as_array()[first % 8];
-        let frame = Frame::new(self.surface, index, middle, is_long_along_u);
-        let frame = if picks.len() > 1 { frame.fit(self.pixels, &conics, &picked)? } else { frame };
-        let mut kernels = [Kernel::default(); MOST_PIXELS];
-        self.kernels(&frame, &conics, picks, &mut kernels);
-        let kernels = &kernels[..picks.len()];
+        conics.clear();
+        conics.extend(pixels.iter().map(|pixels| pixels.conics(texels, self.settings.max_anisotropy)));
+        let [a, c] = [conics[0].a, conics[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
+        let frame = Frame::new(self.surface, index, middle, a < c);
+        let frame = if picks.len() > 1 { frame.fit(pixels, conics, picked)? } else { frame };
+        kernels.clear();
+        for (vector, (pixels, conics)) in pixels.iter().zip(conics).enumerate() {
+            let lanes = frame.kernels(pixels, conics);
+            let here = picks.iter().filter(|pick| usize::from(**pick / 8) == first_vector + vector);
+            kernels.extend(here.map(|pick| lanes.lane(usize::from(pick % 8))));
+        }
         let extent = Extent::of(kernels, frame.depth);
         let depth = frame.greatest_depth(extent.xi);
         let num_rows = extent.q[1] * (1.0 + frame.growth.max(0.0)) + depth - extent.q[0];
@@ -159,47 +168,38 @@ impl Patches<'_> {
             return None;
         }
         let scale = frame.greatest_scale([extent.q[0] - 1.0, extent.q[0] + num_rows + 1.0])?;
-        let mut totals = [Totals::default(); MOST_PIXELS];
-        let totals = &mut totals[..picks.len()];
+        totals.clear();
+        totals.resize(picks.len(), Totals::default());
         let layout = Layout { frame: &frame, extent: &extent, scale, step };
         let num_rows = if lights.is_empty() {
-            layout.run(&mut scratch.unlit, kernels, &[], totals)
+            layout.run(unlit, kernels, &[], totals)
         } else {
-            layout.run(&mut scratch.lit, kernels, lights, totals)
+            layout.run(lit, kernels, lights, totals)
         };
-        for ((found, totals), &pick) in found.iter_mut().zip(totals.iter()).zip(picks) {
+        for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
             *found = totals.mean(!lights.is_empty()).unwrap_or_else(|| {
-                isotropic::bilinear(self.surface, index, self.pixels[usize::from(pick / 8)].footprint(usize::from(pick % 8)).center)
+                let pixels = &self.pixels[usize::from(pick / 8)];
+                isotropic::bilinear(self.surface, index, pixels.footprint(usize::from(pick % 8)).center)
             });
         }
         Some(num_rows)
     }
 
-    fn conics(&self, texels: [f32; 2]) -> [Conics; MOST_VECTORS] {
-        std::array::from_fn(|i| {
-            let pixels = self.pixels.get(i).unwrap_or(&self.pixels[0]);
-            pixels.conics(texels, self.settings.max_anisotropy)
-        })
-    }
-
-    fn kernels(&self, frame: &Frame, conics: &[Conics], picks: &[u8], kernels: &mut [Kernel]) {
-        let mut lanes: [Option<Kernels>; MOST_VECTORS] = [None; MOST_VECTORS];
-        for (kernel, &pick) in kernels.iter_mut().zip(picks) {
-            let [vector, lane] = [pick / 8, pick % 8].map(usize::from);
-            let lanes = lanes[vector].get_or_insert_with(|| frame.kernels(&self.pixels[vector], &conics[vector]));
-            *kernel = lanes.lane(lane);
-        }
-    }
-
     /// The finest level on which the footprints are at most so many texels across as `settings.lines` asks for, and their
     /// sweeps short enough; and the means of places and displacements. `None` where footprints differ too much.
-    fn choose_level(&self, picks: &[u8], picked: &[PixelLanes], is_lit: bool) -> Option<(usize, [[f32; 2]; 2])> {
+    fn choose_level(
+        &self,
+        pixels: &[PixelFootprints],
+        picked: &[PixelLanes],
+        num: usize,
+        is_lit: bool,
+    ) -> Option<(usize, [[f32; 2]; 2])> {
         let surface = self.surface;
         let base = surface.texels_per_repeat(0);
-        let means = means(self.pixels, picked, picks.len());
+        let means = means(pixels, picked, num);
         let [du, dv] = [means[1][0] * base[0], means[1][1] * base[1]];
         let (mut least, mut most, mut long) = (f32::MAX, 0.0_f32, 0.0_f32);
-        for (pixels, picked) in self.pixels.iter().zip(picked) {
+        for (pixels, picked) in pixels.iter().zip(picked) {
             let conics = pixels.conics(base, self.settings.max_anisotropy);
             let greatest = |lanes: PixelLanes| (lanes & *picked).to_array().into_iter().fold(0.0, f32::max);
             let far = PixelLanes::splat(f32::MAX) & !*picked;
@@ -223,10 +223,10 @@ impl Patches<'_> {
     }
 }
 
-/// All bits of the lanes that are picked.
-fn masks(picks: &[u8]) -> [PixelLanes; MOST_VECTORS] {
+/// All bits of the lanes that are picked, from a vector on.
+fn masks(picks: &[u8], first_vector: usize) -> [PixelLanes; MOST_VECTORS] {
     let mut bits = [[0_u32; 8]; MOST_VECTORS];
-    picks.iter().for_each(|pick| bits[usize::from(pick / 8)][usize::from(pick % 8)] = u32::MAX);
+    picks.iter().for_each(|pick| bits[usize::from(pick / 8) - first_vector][usize::from(pick % 8)] = u32::MAX);
     bits.map(|lanes| PixelLanes::new(lanes.map(f32::from_bits)))
 }
 
