@@ -215,15 +215,17 @@ struct Lines<'a> {
     xi: TexelLanes,
     /// Rows down to the deepest relief in the middle of each line.
     depth: TexelLanes,
-    /// The middle's row in the walking direction.
+    /// The middle's row in the walking direction, and whether that is up (1) or down (-1).
     middle: f32,
+    sign: i32,
 }
 
 impl<'a> Lines<'a> {
     fn new(grid: &Grid<'a>, first: usize) -> Self {
         let frame = grid.frame;
         let xi = (lane_indices() + first as f32) * grid.spacing + grid.first;
-        Self { frame, xi, depth: xi * frame.tilt + frame.depth, middle: frame.toward * frame.origin[1] }
+        let depth = xi * frame.tilt + frame.depth;
+        Self { frame, xi, depth, middle: frame.toward * frame.origin[1], sign: frame.toward as i32 }
     }
 
     /// The last texel row at or before a seen place, in the walking direction.
@@ -240,13 +242,14 @@ impl<'a> Lines<'a> {
     /// The texels of a row.
     #[inline(always)]
     fn texels<const CHANNELS: usize>(&self, row: i32) -> Texels<CHANNELS> {
-        let Frame { level, origin, toward, shear, spread, growth, .. } = *self.frame;
+        let Frame { level, origin, shear, spread, growth, .. } = *self.frame;
         let q = row as f32 - self.middle;
         let x = self.xi * (spread * q + 1.0) + (origin[0] + shear * q);
-        let left = x.as_array()[0].floor();
+        // By lanes, since the scalar conversion saturates.
+        let left = TexelLanes::splat(x.as_array()[0]).floor();
         let place = x - left;
-        let words = level.row(row * toward as i32);
-        let (start, stride) = (level.run_start(left as i32), level.stride());
+        let words = level.row(row * self.sign);
+        let (start, stride) = (level.run_start(left.fast_trunc_int().as_array()[0]), level.stride());
         let cell = place.fast_trunc_int();
         let part = place - TexelLanes::from_i32x8(cell);
         let lanes = as_unsigned(cell);
