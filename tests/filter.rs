@@ -294,8 +294,8 @@ fn reference_lines<'a>(surface: &'a Surface, pixel: &Pixel) -> Lines<'a> {
     let (center, displacement) = (scaled(pixel.footprint.center), scaled(pixel.displacement));
     let lines = Lines { level: &surface.levels[0], conic: Conic::from(&ellipse), center, displacement, spacing: 1.0 };
     let width = 2.0 * lines.half_width();
-    // Narrow footprints take eight lines less than a texel apart.
-    Lines { spacing: if width < 4.5 { width / 8.0 } else { 1.0 }, ..lines }
+    // Narrow footprints take six lines; wide ones lines 0.857 texels apart.
+    Lines { spacing: (width / 6.0).min(0.857), ..lines }
 }
 
 /// A floor's footprint: `aspect` times as long along the view as across.

@@ -16,8 +16,8 @@ pub mod visible;
 
 pub use ellipse::{Ellipse, RECONSTRUCTION};
 pub use far_field::FarField;
-pub use horizon::PixelFootprints;
 pub use footprint::{Corner, Differences, Footprint, at_pixel, differences};
+pub use horizon::PixelFootprints;
 pub use texel_set::{TexelRow, TexelSet};
 
 use crate::settings::Settings;

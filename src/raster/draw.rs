@@ -4,8 +4,8 @@
 //! a [`Scratch`], taken from a pool and given back, so a steady frame allocates nothing for tiles or triangles.
 
 use super::bin::{Bins, TileGrid};
-use super::edge::Rect;
 use super::block::{QuadBlock, SHADED_BLOCK};
+use super::edge::Rect;
 use super::gather::{SeenQuad, gather};
 use super::quad::{AttributePlanes, QuadPair};
 use super::scratch::{Borrowed, Scratch};

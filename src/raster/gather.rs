@@ -24,7 +24,8 @@ pub(super) struct SeenQuad {
 pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<SeenQuad>) {
     seen.clear();
     let [num_columns, num_rows] = buffer.size();
-    let places = (0..num_rows.div_ceil(SHADED_BLOCK)).flat_map(|block| (0..num_columns).map(move |column| (block, column)));
+    let places =
+        (0..num_rows.div_ceil(SHADED_BLOCK)).flat_map(|block| (0..num_columns).map(move |column| (block, column)));
     for (block, column) in places {
         for row in (block * SHADED_BLOCK..num_rows.min((block + 1) * SHADED_BLOCK)).step_by(2) {
             let pixels: [[u32x8; 2]; S] =
@@ -35,7 +36,8 @@ pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<S
             if differs != u32x8::ZERO {
                 (0..4).for_each(|quad| gather_quad(&pixels, quad, origin(quad), seen));
             } else if first != NONE {
-                let whole = |quad| SeenQuad { triangle: first, origin: origin(quad), coverage: [S as u8; 4], material: 0 };
+                let whole =
+                    |quad| SeenQuad { triangle: first, origin: origin(quad), coverage: [S as u8; 4], material: 0 };
                 seen.extend((0..4).map(whole));
             }
         }

@@ -137,9 +137,13 @@ impl Lines<'_> {
         let (mut previous, mut horizon) = (self.crossing(first, xi), entry);
         for next in (first + 1..=last).map(|i| self.crossing(i, xi)) {
             let record = next.p.min(exit).max(horizon);
-            let weight = (integral_at(record) - integral_at(horizon)) * exp_negative(2.0 * r0);
-            if weight > 0.0 {
-                let t = ((0.5 * (record + horizon) - previous.p) / (next.p - previous.p)).clamp(0.0, 1.0);
+            // The kernel changes along a long segment: cut it.
+            let num_parts = ((record - horizon) / half * 64.0).ceil();
+            let length = (record - horizon) / num_parts;
+            for part in 0..num_parts as u32 {
+                let from = horizon + length * f64::from(part);
+                let weight = (integral_at(from + length) - integral_at(from)) * exp_negative(2.0 * r0);
+                let t = ((from + 0.5 * length - previous.p) / (next.p - previous.p)).clamp(0.0, 1.0);
                 add(weights, &previous, weight * (1.0 - t));
                 add(weights, &next, weight * t);
             }

@@ -9,7 +9,7 @@ use crate::simd::{PixelLanes, TexelLanes, exp_negative, sum, u32x8};
 use crate::texture::{FULL_F32, Surface};
 
 /// Texels of a table across a footprint's shorter axis: at least this many, and less than twice as many.
-const TEXELS_ACROSS: f32 = 4.0;
+const TEXELS_ACROSS: f32 = 3.0;
 
 /// Most texels along the longer axis: a thin footprint at the horizon takes a coarser table.
 const TEXELS_ALONG: f32 = 64.0;
@@ -57,7 +57,7 @@ impl FarField {
             2.0 * short < 2.0 * TEXELS_ACROSS && 2.0 * long < TEXELS_ALONG
         };
         let level = (self.first_level..last).find(fits).unwrap_or(last);
-        (level, at(level).widened(settings.max_anisotropy, Formulas::Meant))
+        (level, at(level))
     }
 }
 

@@ -45,7 +45,8 @@ impl Totals {
         let inverse = 1.0 / grid.spacing;
         let from = (kernel.xi - kernel.half_width - grid.first) * inverse;
         let to = (kernel.xi + kernel.half_width - grid.first) * inverse;
-        let lines = (from.floor() as i32 + 1).max(0) as usize..(to.ceil() as i32).clamp(0, grid.num_lines as i32) as usize;
+        let lines =
+            (from.floor() as i32 + 1).max(0) as usize..(to.ceil() as i32).clamp(0, grid.num_lines as i32) as usize;
         let bin_at = |place: f32| (place - grid.begin) / grid.step;
         let from = bin_at(kernel.q - kernel.half_height).max(0.0) as usize;
         let to = (bin_at(kernel.q + kernel.half_height).ceil().max(0.0) as usize).min(grid.num_bins);

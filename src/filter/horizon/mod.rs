@@ -61,7 +61,7 @@ const MOST_RATIO: f32 = 2.25;
 pub const PICTURE_BINS: f32 = 6.0;
 /// As [`PICTURE_BINS`], under lights, which are asked for each bin.
 pub const LIT_BINS: f32 = 16.0;
-const PIXEL_BINS: f32 = 128.0;
+const PIXEL_BINS: f32 = 256.0;
 
 /// Buffers of sweeps, kept between them.
 #[derive(Clone, Debug, Default)]
@@ -149,7 +149,9 @@ impl Patches<'_> {
         let (index, middle) = self.choose_level(pixels, picked, picks.len(), !lights.is_empty())?;
         let texels = self.surface.texels_per_repeat(index);
         conics.clear();
-        conics.extend(pixels.iter().map(|pixels| pixels.conics(texels, self.settings.max_anisotropy)));
+        let blur = blur(index);
+        let conics_of = |pixels: &PixelFootprints| pixels.conics(texels, self.settings.max_anisotropy).sharpened(blur);
+        conics.extend(pixels.iter().map(conics_of));
         let [a, c] = [conics[0].a, conics[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
         let frame = Frame::new(self.surface, index, middle, a < c);
         let frame = if picks.len() > 1 { frame.fit(pixels, conics, picked)? } else { frame };
@@ -221,6 +223,12 @@ impl Patches<'_> {
         let last = surface.levels.len() - 1;
         Some(((0..last).find(fits).unwrap_or(last), means))
     }
+}
+
+/// Four times the variance, in square texels of a level, by which its texels are wider than those of the base level: each is
+/// the mean of a square, variance 1/12, and they are interpolated, variance 1/6.
+fn blur(level: usize) -> f32 {
+    1.0 - 0.25_f32.powi(level as i32)
 }
 
 /// All bits of the lanes that are picked, from a vector on.

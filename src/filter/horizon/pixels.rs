@@ -78,6 +78,14 @@ pub(super) struct Conics {
 }
 
 impl Conics {
+    /// The ellipses with the squares of their half axes less by `amount`, but by half at most.
+    #[inline]
+    pub(super) fn sharpened(self, amount: f32) -> Self {
+        let amount = (self.short * 0.5).fast_min(PixelLanes::splat(amount));
+        let (short, long) = (self.short - amount, self.long - amount);
+        Self { a: self.a - amount, b: self.b, c: self.c - amount, f: short * long, short, long }
+    }
+
     #[inline]
     fn bounded(a: PixelLanes, b: PixelLanes, c: PixelLanes, determinant: PixelLanes, max_anisotropy: f32) -> Self {
         let zero = PixelLanes::ZERO;

@@ -192,7 +192,8 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
         }
         self.bins -= mask(is_full);
         let is_done = lanes(self.bins.simd_ge(i32x8::splat(self.end_bin)));
-        self.bin_end = is_done.select(TexelLanes::splat(f32::MAX), self.bin_end + (is_full & TexelLanes::splat(self.step)));
+        self.bin_end =
+            is_done.select(TexelLanes::splat(f32::MAX), self.bin_end + (is_full & TexelLanes::splat(self.step)));
         self.is_done = is_done.all();
     }
 
