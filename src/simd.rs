@@ -60,6 +60,21 @@ pub fn exp_negative(x: f32x8) -> f32x8 {
     e4 * e4
 }
 
+/// Of sixteen words in a row, those with the given numbers, 0 to 15.
+#[must_use]
+#[inline(always)]
+pub fn pick_words(words: [u32x8; 2], numbers: u32x8) -> u32x8 {
+    if cfg!(all(target_feature = "avx512f", target_feature = "avx512vl")) {
+        wide::ShuffleExt::shuffle(words, numbers)
+    } else {
+        // Elsewhere a selection of two is faster than what shuffles of two vectors are made of.
+        let is_second: i32x8 = as_signed(numbers).simd_gt(i32x8::splat(7));
+        let numbers = numbers & u32x8::splat(7);
+        let [first, second] = words.map(|words| as_signed(words.shuffle(numbers)));
+        as_unsigned(is_second.select(second, first))
+    }
+}
+
 /// The same bits as signed numbers.
 #[must_use]
 pub fn as_signed(words: u32x8) -> i32x8 {

@@ -48,8 +48,8 @@ const MOST_VECTORS: usize = MOST_PIXELS / 8;
 /// Lines across the widest ellipse of a patch, unless that puts them farther apart than [`WIDEST`].
 const NUM_LINES: f32 = 6.0;
 
-/// Greatest distance between lines in texels: eight lines and their neighbours lie within eight texels.
-const WIDEST: f32 = 0.857;
+/// Greatest distance between lines in texels: eight lines and their neighbours lie within sixteen texels.
+const WIDEST: f32 = 1.99;
 
 /// Most bins of a patch of several pixels.
 const MOST_BINS: f32 = 256.0;
@@ -214,7 +214,7 @@ impl Patches<'_> {
         // Under lights no table helps where a level loses what hides behind fine ridges: take one level finer instead.
         let bias = if is_lit { 1 } else { self.far.map_or(0, |far| far.level_bias([du, dv])) };
         let (across, walk) = (2.0 * most.sqrt(), du.abs().max(dv.abs()));
-        let widest = (self.settings.lines << bias) as f32 * WIDEST;
+        let widest = (self.settings.lines << bias) as f32 * 0.857;
         let fits = |level: &usize| {
             let texels = surface.texels_per_repeat(*level);
             let scale = (texels[0] / base[0]).max(texels[1] / base[1]);

@@ -7,7 +7,7 @@
 use super::frame::Frame;
 use super::kernel::Kernel;
 use crate::filter::unpack_normals;
-use crate::simd::{Blend, TexelLanes, as_unsigned, high_half, i32x8, lanes, low_half, mask, u32x8};
+use crate::simd::{Blend, TexelLanes, as_unsigned, high_half, i32x8, lanes, low_half, mask, pick_words, u32x8};
 use crate::texture::{FULL_F32, Level};
 
 /// Most lines of a grid.
@@ -255,8 +255,9 @@ impl<'a> Lines<'a> {
         let part = place - TexelLanes::from_i32x8(cell);
         let lanes = as_unsigned(cell);
         let pick = |plane: usize| {
-            let run = Level::run(words, start + plane * stride);
-            [run.shuffle(lanes), run.shuffle(lanes + u32x8::splat(1))]
+            let start = start + plane * stride;
+            let runs = [Level::run(words, start), Level::run(words, start + 8)];
+            [pick_words(runs, lanes), pick_words(runs, lanes + u32x8::splat(1))]
         };
         let blend = Blend::new(part);
         let (red_green, blue_height) = (blend.mix(pick(0)), blend.mix(pick(1)));
