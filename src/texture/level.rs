@@ -71,6 +71,18 @@ impl Level {
         }
     }
 
+    /// Where the run of up to [`APRON`] texels that begins at a column and row of the endless pattern starts among all words.
+    #[inline(always)]
+    pub(crate) fn start_at(&self, x: i32, y: i32) -> usize {
+        wrap_index(self.wrap, y, self.height) * self.stride() * self.num_planes + self.run_start(x)
+    }
+
+    /// All words; see [`Self::start_at`].
+    #[inline(always)]
+    pub(crate) fn words(&self) -> &[u32] {
+        &self.words
+    }
+
     /// Distance in words between the planes of a row.
     pub(crate) fn stride(&self) -> usize {
         self.width + 2 * APRON

@@ -46,7 +46,7 @@ pub const MOST_PIXELS: usize = 64;
 const MOST_VECTORS: usize = MOST_PIXELS / 8;
 
 /// Lines across the widest ellipse of a patch, unless that puts them farther apart than [`WIDEST`].
-const NUM_LINES: f32 = 6.0;
+const NUM_LINES: f32 = 7.0;
 
 /// Greatest distance between lines in texels: eight lines and their neighbours lie within sixteen texels.
 const WIDEST: f32 = 1.99;

@@ -93,13 +93,13 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let first_row = lines.row_before(start);
         // The deepest relief of the last row is seen behind all bins.
         let end_row = first_row + lines.rows_between(start, end);
-        let mut last = lines.texels::<CHANNELS>(first_row);
+        let mut last = lines.texels::<CHANNELS>(first_row, lines.start_of(first_row));
         let mut row = first_row + 1;
         // Rows are read ahead, so that no branch on what they show waits for memory. None of the first ones can be the last.
         let mut read = [last; READ_AHEAD];
         let mut num_read = ((end - start) as usize).clamp(1, READ_AHEAD);
         while !walk.is_done && row < end_row {
-            read[..num_read].iter_mut().zip(row..).for_each(|(read, row)| *read = lines.texels::<CHANNELS>(row));
+            lines.read(row, &mut read[..num_read]);
             for next in &read[..num_read] {
                 walk.pass(&last, next, &mut self.bins);
                 last = *next;
@@ -240,17 +240,47 @@ impl<'a> Lines<'a> {
         (end * (1.0 + self.frame.growth) + depth).max(end) as i32 - start as i32 + 4
     }
 
+    /// The texels of neighbouring rows from `first` on.
+    #[inline(always)]
+    fn read<const CHANNELS: usize>(&self, first: i32, read: &mut [Texels<CHANNELS>]) {
+        let mut starts = [0; READ_AHEAD];
+        let (words, stride) = (self.frame.level.words(), self.frame.level.stride());
+        // One word of each plane first: many rows come from memory at once, where the long work on a row lets few.
+        let mut touched = 0;
+        for (start, row) in starts[..read.len()].iter_mut().zip(first..) {
+            *start = self.start_of(row);
+            touched |= words[*start] | words[*start + stride];
+        }
+        std::hint::black_box(touched);
+        for ((read, start), row) in read.iter_mut().zip(starts).zip(first..) {
+            *read = self.texels(row, start);
+        }
+    }
+
+    /// Where the lines lie in a row, in texels.
+    #[inline(always)]
+    fn columns(&self, row: i32) -> TexelLanes {
+        let Frame { origin, shear, spread, .. } = *self.frame;
+        let q = row as f32 - self.middle;
+        self.xi * (spread * q + 1.0) + (origin[0] + shear * q)
+    }
+
+    /// Where the run of texels around the lines in a row starts among the level's words.
+    #[inline(always)]
+    fn start_of(&self, row: i32) -> usize {
+        let x = TexelLanes::splat(self.columns(row).as_array()[0]);
+        // By lanes, since the scalar conversion saturates.
+        self.frame.level.start_at(x.floor().fast_trunc_int().as_array()[0], row * self.sign)
+    }
+
     /// The texels of a row.
     #[inline(always)]
-    fn texels<const CHANNELS: usize>(&self, row: i32) -> Texels<CHANNELS> {
-        let Frame { level, origin, shear, spread, growth, .. } = *self.frame;
+    fn texels<const CHANNELS: usize>(&self, row: i32, start: usize) -> Texels<CHANNELS> {
+        let Frame { level, growth, .. } = *self.frame;
         let q = row as f32 - self.middle;
-        let x = self.xi * (spread * q + 1.0) + (origin[0] + shear * q);
-        // By lanes, since the scalar conversion saturates.
-        let left = TexelLanes::splat(x.as_array()[0]).floor();
-        let place = x - left;
-        let words = level.row(row * self.sign);
-        let (start, stride) = (level.run_start(left.fast_trunc_int().as_array()[0]), level.stride());
+        let x = self.columns(row);
+        let place = x - TexelLanes::splat(x.as_array()[0]).floor();
+        let (words, stride) = (level.words(), level.stride());
         let cell = place.fast_trunc_int();
         let part = place - TexelLanes::from_i32x8(cell);
         let lanes = as_unsigned(cell);
