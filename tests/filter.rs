@@ -178,6 +178,17 @@ proptest! {
     }
 }
 
+/// Found by fuzzing: a ray along the very edge of the height field's cells hit up to a texel late.
+#[test]
+fn marches_along_the_edges_of_cells_find_the_first_hit() {
+    let heights = HeightImage::from_fn(11, 4, |x, y| 0.5 + 0.01 * (x % 3 + y) as f32);
+    let surface = surface(SurfaceMaps { height: Some(heights), ..Default::default() });
+    for (place, view) in [([-13.625, -13.625], [-13.625, 0.0]), ([-13.5 / 11.0, 0.3], [0.0, 3.7])] {
+        let pixel = Pixel::new(place, [0.1, 0.0], [0.0, 0.1], view);
+        invariants::march_finds_first_hit(&surface, &pixel).expect("the first hit");
+    }
+}
+
 /// A stored colour as a share of the brightest.
 fn unit(stored: f32) -> f32 {
     stored / FULL as f32

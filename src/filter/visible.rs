@@ -152,22 +152,27 @@ fn keep_ends(row: &TexelRow, batches: &mut [u8], occlusion: &Occlusion) -> u64 {
     num_tested
 }
 
-/// Traces every texel and counts, in its place, the visible texel that covers it, if it lies in T; the set's bits are the
-/// buffer of counted texels, which keeps each from counting twice (the paper's Fig. 6).
+/// Traces every texel; a hidden one leads to the texel that covers it, which leads on until a visible one, and that counts,
+/// if it lies in T. A buffer of texels traced before ends a chain early and keeps each from counting twice (the paper's
+/// Fig. 6).
 fn resolve(set: &mut TexelSet, occlusion: &Occlusion) -> u64 {
     let inside = set.clone();
+    let mut is_traced = vec![0; set.bits.len()];
     set.bits.fill(0);
     let mut num_tested = 0;
     for [x, y] in inside.iter() {
         let mut texel = [x, y];
-        num_tested += 1;
-        // Each coverer is nearer to the eye, so the chain ends at a visible texel.
-        while let Some(coverer) = occlusion.coverer(texel[0], texel[1]) {
-            texel = coverer;
-        }
-        if inside.contains(texel[0], texel[1]) {
-            let (byte, bit) = set.place(texel[0], texel[1]).expect("a batch spans every texel of T");
-            set.bits[byte] |= bit;
+        let open = |[x, y]: [i32; 2], is_traced: &[u8]| {
+            let place = inside.place(x, y);
+            place.filter(|&(byte, bit)| inside.bits[byte] & !is_traced[byte] & bit != 0)
+        };
+        while let Some((byte, bit)) = open(texel, &is_traced) {
+            is_traced[byte] |= bit;
+            num_tested += 1;
+            match occlusion.coverer(texel[0], texel[1]) {
+                Some(coverer) => texel = coverer,
+                None => set.bits[byte] |= bit,
+            }
         }
     }
     num_tested

@@ -38,8 +38,8 @@ pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelL
     let mut rays = Rays {
         start: [start(base[0], nu, field.size[0]), start(base[1], nv, field.size[1])],
         step,
-        inverse: step
-            .map(|s| PixelLanes::ONE / s.abs().simd_gt(PixelLanes::splat(1e-9)).select(s, PixelLanes::splat(1e-9))),
+        inverse: step.map(|s| moves(s).select(PixelLanes::ONE / s, PixelLanes::ZERO)),
+        late: step.map(|s| moves(s).select(PixelLanes::ZERO, PixelLanes::splat(2.0))),
         depth: PixelLanes::ZERO,
         level: i32x8::new(level),
         parent: [i32x8::splat(i32::MIN); 2],
@@ -54,11 +54,18 @@ pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelL
     rays.depth.fast_min(PixelLanes::ONE)
 }
 
+/// Whether a step leads anywhere.
+fn moves(step: PixelLanes) -> PixelLanes {
+    step.abs().simd_gt(PixelLanes::splat(1e-9))
+}
+
 /// Eight rays on their way. Places are in cells: texel centres lie at whole numbers.
 struct Rays {
     start: [PixelLanes; 2],
     step: [PixelLanes; 2],
+    /// One over the step; 0 along an axis that a ray does not move along, which it leaves late: at a depth of 2.
     inverse: [PixelLanes; 2],
+    late: [PixelLanes; 2],
     depth: PixelLanes,
     level: i32x8,
     /// The parents of the nodes just passed; no node where the ray did not move on.
@@ -144,8 +151,7 @@ impl Rays {
         let way = |axis: usize| {
             let forwards = self.step[axis].simd_gt(PixelLanes::ZERO);
             let edge = forwards.select(nodes.high[axis] + nudge, nodes.low[axis] - nudge);
-            // A ray that does not move along the axis, by its sign, leaves late.
-            ((edge - place[axis]) * self.inverse[axis]).abs()
+            ((edge - place[axis]) * self.inverse[axis]).abs() + self.late[axis]
         };
         (self.depth + way(0).fast_min(way(1))).fast_min(PixelLanes::ONE)
     }
