@@ -233,13 +233,19 @@ fn bm_is_the_depth_unless_the_caller_says_another() {
     assert!(files.refusal().contains("relief_depth"));
 }
 
+/// Texels are packed in 15 bits: 16-bit values come back to within one.
+fn assert_near(found: &[i32], expected: &[i32]) {
+    let is_near = found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| a.abs_diff(*b) <= 1);
+    assert!(is_near, "{found:?} for {expected:?}");
+}
+
 #[test]
 fn mm_maps_the_range_and_the_sense_turns_it() {
     let mut files = Files::quad("disp -mm 0.2 0.6 h.png");
     files.image("h.png", gray(&[0, 255]));
-    assert_eq!(files.heights(), [13107, 52428]);
+    assert_near(&files.heights(), &[13107, 52428]);
     files.options.height_sense = HeightSense::WhiteDeep;
-    assert_eq!(files.heights(), [52428, 13107]);
+    assert_near(&files.heights(), &[52428, 13107]);
 }
 
 #[test]
@@ -305,13 +311,13 @@ fn files_that_the_caller_names_replace_the_materials_own() {
 // ---- images
 
 #[test]
-fn sixteen_bit_gray_keeps_its_bits() {
+fn sixteen_bit_gray_does_not_go_through_eight_bits() {
     let files = Files::quad("disp h.png");
     files.image("h.png", ImageBuffer::from_fn(3, 1, |x, _| Luma([[1_u16, 40001, 65535][x as usize]])));
-    assert_eq!(files.heights(), [1, 40001, 65535]);
+    assert_near(&files.heights(), &[1, 40001, 65535]);
     files.write("s.mtl", "newmtl stone\ndisp h.tif\n");
     files.image("h.tif", ImageBuffer::from_fn(3, 1, |x, _| Luma([[1_u16, 40001, 65535][x as usize]])));
-    assert_eq!(files.heights(), [1, 40001, 65535]);
+    assert_near(&files.heights(), &[1, 40001, 65535]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! Each function checks one property for one pixel and says in one line what broke. A [`Pixel`] is a footprint and a view
 //! in texture space; [`Pixel::new`] takes any numbers, NaN and infinity included, and bounds them as the renderer does.
-//! The filter that is checked is that of the [`Settings`].
+//! The filter that is checked is that of the [`Settings`](crate::Settings).
 //!
 //! To fuzz your own textures and settings:
 //!
