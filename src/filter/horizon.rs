@@ -149,10 +149,10 @@ impl<'a> Sweep<'a> {
         let is_flat = dy.abs() < FLAT;
         let (depth, e) = if is_flat { (0.0, 0.0) } else { (dy, dx / dy) };
         let Ellipse { a, b, c, f } = *ellipse;
-        let (a1, b1, c1) = (a / f, (2.0 * a * e + b) / f, ((a * e + b) * e + c) / f);
-        let across = (a1 - b1 * b1 / (4.0 * c1)).max(1e-12);
-        let half = [1.0 / across.sqrt(), 1.0 / (c1 - b1 * b1 / (4.0 * a1)).max(1e-12).sqrt()];
-        Self { level, center, depth, shear: e, half, along: c1.sqrt(), skew: b1 / (2.0 * c1), across }
+        // F = A C - B^2 / 4, which the shear keeps: so A' - B'^2 / 4C' is 1 / C F, without a difference that cancels.
+        let (b, c) = (2.0 * a * e + b, ((a * e + b) * e + c).max(f / a));
+        let half = [c.sqrt(), a.sqrt()];
+        Self { level, center, depth, shear: e, half, along: (c / f).sqrt(), skew: b / (2.0 * c), across: 1.0 / c }
     }
 
     fn run(&self, lights: Option<&LocalLights>) -> (Option<Filtered>, u64) {
