@@ -3,7 +3,7 @@
 
 mod common;
 
-use basrelief::filter::differences;
+use basrelief::filter::differences_for;
 use basrelief::geometry::project;
 use basrelief::invariants::{Pixel, visible_sets};
 use basrelief::metrics::compare;
@@ -94,7 +94,7 @@ fn sets_of_texels_are_the_papers_on_every_footprint_of_a_frame() {
             let depth = march(&field, &pair.uv, &reach);
             let offset = reach.map(|lanes| lanes * depth);
             let place = [pair.uv[0] + offset[0], pair.uv[1] + offset[1]];
-            let differences = differences(&pair.uv, &offset, (settings.derivatives, settings.formulas));
+            let differences = differences_for(&pair.uv, &offset, &settings);
             for lane in 0..4 {
                 let displacement = reach.map(|lanes| lanes.to_array()[lane]);
                 let pixel = Pixel { footprint: differences.footprint(&place, lane), displacement };

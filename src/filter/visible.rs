@@ -129,25 +129,20 @@ fn remove_exact(set: &mut TexelSet, occlusion: &Occlusion) -> u64 {
 /// Keeps a row's texels from both ends, each until its first hidden one.
 fn keep_ends(row: &TexelRow, batches: &mut [u8], occlusion: &Occlusion) -> u64 {
     let mut num_tested = 0;
-    let mut test = |i: usize, bits: u8| {
+    let mut hidden_of = |i: usize, bits: u8| {
         num_tested += u64::from(bits.count_ones());
         bits & !occlusion.visible(row.x + 8 * i as i32, row.y, bits)
     };
-    let first_hidden = batches.iter().enumerate().find_map(|(i, &bits)| {
-        let hidden = test(i, bits);
-        (hidden != 0).then(|| (i, hidden.trailing_zeros()))
-    });
-    let Some((low, low_bit)) = first_hidden else { return num_tested };
-    // At least the batch of the first hidden texel ends this scan.
-    let last_hidden = (low..batches.len()).rev().find_map(|i| {
-        let hidden = test(i, batches[i]);
-        (hidden != 0).then(|| (i, hidden.leading_zeros()))
-    });
-    let (high, high_zeros) = last_hidden.unwrap_or((low, 7 - low_bit));
+    let mut first = batches.iter().enumerate().map(|(i, &bits)| (i, hidden_of(i, bits)));
+    let Some((low, low_hidden)) = first.find(|(_, hidden)| *hidden != 0) else { return num_tested };
+    // The batch of the first hidden texel ends this scan; what it hides is known.
+    let mut last = (low + 1..batches.len()).rev().map(|i| (i, hidden_of(i, batches[i])));
+    let (high, high_hidden) = last.find(|(_, hidden)| *hidden != 0).unwrap_or((low, low_hidden));
+    let before = (1_u32 << low_hidden.trailing_zeros()) - 1;
+    let after = !(0xff_u32 >> high_hidden.leading_zeros());
     for (i, bits) in batches.iter_mut().enumerate().take(high + 1).skip(low) {
-        let before = if i == low { (1_u32 << low_bit) - 1 } else { 0 };
-        let after = if i == high { !(0xff_u32 >> high_zeros) & 0xff } else { 0 };
-        *bits &= (before | after) as u8;
+        let kept = if i == low { before } else { 0 } | if i == high { after } else { 0 };
+        *bits &= kept as u8;
     }
     num_tested
 }
