@@ -1,7 +1,7 @@
 //! From a footprint to a filtered texel.
 //!
 //! [`Footprint`] is where a pixel lies in the texture, by formulas (2) or (3); [`Ellipse`] its ellipse, formula (1);
-//! [`Scan`] the level on which it is looked up; [`TexelSet`] the texels in it and those of them that the eye sees; [`ewa`] their weighted mean.
+//! [`TexelSet`] the texels in it and those of them that the eye sees; [`ewa`] their weighted mean.
 
 mod ellipse;
 pub mod ewa;
@@ -10,7 +10,6 @@ mod footprint;
 pub mod horizon;
 pub mod isotropic;
 pub mod parallax;
-mod scan;
 mod texel_set;
 pub mod truth;
 pub mod visible;
@@ -18,12 +17,14 @@ pub mod visible;
 pub use ellipse::{Ellipse, RECONSTRUCTION};
 pub use far_field::FarField;
 pub use footprint::{Corner, Differences, Footprint, at_pixel, differences, differences_for};
-pub use scan::Scan;
 pub use texel_set::{TexelRow, TexelSet};
 
 use crate::settings::Settings;
 use crate::simd::{TexelLanes, u32x8};
 use crate::texture::Surface;
+
+/// Most texels of an ellipse, whatever the budget: larger ones take a coarser level, so that a pixel's time is bounded.
+const MAX_TEXELS: f32 = (1 << 20) as f32;
 
 /// What a filter returns: means of the stored texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,6 +44,19 @@ impl Filtered {
     }
 }
 
+/// The mip level on which the ellipse of `Ewa` and `Visible` is scanned, and the ellipse in its texels.
+#[must_use]
+pub fn level_within_budget(surface: &Surface, footprint: &Footprint, settings: &Settings) -> (usize, Ellipse) {
+    let budget = if settings.texel_budget == 0 { MAX_TEXELS } else { settings.texel_budget as f32 };
+    let at = |level: usize| {
+        Ellipse::new(footprint, surface.texels_per_repeat(level), settings.formulas)
+            .widened(settings.max_anisotropy, settings.formulas)
+    };
+    let last = surface.levels.len() - 1;
+    let level = (0..last).find(|&level| at(level).area() <= budget).unwrap_or(last);
+    (level, at(level))
+}
+
 /// The mean of the texels of the ellipse, hidden ones left out if there is a displacement (repeats down to the deepest
 /// relief). Returns how many texels were tested and taken as well.
 pub fn ellipse_mean(
@@ -52,17 +66,19 @@ pub fn ellipse_mean(
     settings: &Settings,
     set: &mut TexelSet,
 ) -> (Filtered, [u64; 2]) {
-    let scan = Scan::new(surface, footprint, settings);
-    scan.fill(set);
+    let (index, ellipse) = level_within_budget(surface, footprint, settings);
+    let (level, texels) = (&surface.levels[index], surface.texels_per_repeat(index));
+    let center = [footprint.center[0] * texels[0], footprint.center[1] * texels[1]];
+    set.fill_ellipse(&ellipse, center);
     let mut num_tested = set.len() as u64;
-    if let Some(displacement) = displacement {
-        let occlusion = visible::Occlusion::new(scan.level, scan.in_texels(displacement));
+    if let Some([du, dv]) = displacement {
+        let occlusion = visible::Occlusion::new(level, [du * texels[0], dv * texels[1]]);
         num_tested = visible::remove_hidden(set, &occlusion, settings.visibility);
     }
     let num_visible = set.len() as u64;
     // T_vis is never empty: where every texel of a set was hidden or skipped, the hit itself counts.
-    let mean = ewa::average(scan.level, set, &scan.ellipse, scan.center);
-    (mean.unwrap_or_else(|| isotropic::bilinear(surface, scan.index, footprint.center)), [num_tested, num_visible])
+    let mean = ewa::average(level, set, &ellipse, center);
+    (mean.unwrap_or_else(|| isotropic::bilinear(surface, index, footprint.center)), [num_tested, num_visible])
 }
 
 /// Eight packed normals.

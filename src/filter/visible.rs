@@ -4,6 +4,11 @@
 //! height and is followed against the displacement `D` (in texels), in steps of one texel along the longer axis of `D`,
 //! until it is above all relief; between two texels across the ray the height is interpolated. At one pixel the slope is
 //! the same for all texels, so a step of eight neighbouring rays reads eight neighbouring heights.
+//!
+//! Beyond the paper's letter, the ellipse has Heckbert's kernel and weight, and where the relief jumps between two pixels of
+//! a quad, formula (3), which spans the jump and so takes in texels of two unrelated parts and all around them, gives way
+//! to formula (2) (see [`differences_for`](super::differences_for); `max_stretch` 0 keeps the letter). As in the paper, a
+//! texel counts whole or not at all, so one seen from its side counts like one that faces the eye.
 
 use super::TexelSet;
 use super::texel_set::TexelRow;

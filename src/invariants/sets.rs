@@ -2,7 +2,7 @@
 
 use super::{Checked, Pixel, ensure};
 use crate::filter::visible::{Occlusion, remove_hidden};
-use crate::filter::{self, Scan, TexelSet, isotropic};
+use crate::filter::{self, TexelSet, isotropic, level_within_budget};
 use crate::settings::{Filter, Settings, Visibility};
 use crate::texture::Surface;
 use std::collections::BTreeSet;
@@ -16,12 +16,13 @@ type Texels = BTreeSet<[i32; 2]>;
 /// # Errors
 /// Says what broke.
 pub fn visible_sets(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Checked {
-    // The level and direction of the rows that the filter takes for rays from every texel.
-    let settings = Settings { filter: Filter::Visible, visibility: Visibility::Exact, ..settings.clone() };
-    let scan = Scan::new(surface, &pixel.footprint, &settings);
+    let (index, ellipse) = level_within_budget(surface, &pixel.footprint, settings);
+    let (level, texels) = (&surface.levels[index], surface.texels_per_repeat(index));
+    let [center, displacement] =
+        [pixel.footprint.center, pixel.displacement].map(|p| [p[0] * texels[0], p[1] * texels[1]]);
     let mut all = TexelSet::default();
-    scan.fill(&mut all);
-    let occlusion = Occlusion::new(scan.level, scan.in_texels(pixel.displacement));
+    all.fill_ellipse(&ellipse, center);
+    let occlusion = Occlusion::new(level, displacement);
     let left_by = |how| {
         let mut set = all.clone();
         remove_hidden(&mut set, &occlusion, how);
@@ -36,10 +37,11 @@ pub fn visible_sets(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Ch
     ensure(miscovered.is_none(), || format!("{miscovered:?} is both visible and covered, or neither"))?;
     ensure(two_ended.is_subset(&exact), || format!("two-ended takes hidden {:?}", two_ended.difference(&exact)))?;
     ensure(resolved == exact, || format!("resolved differs by {:?}", resolved.symmetric_difference(&exact)))?;
+    let settings = Settings { filter: Filter::Visible, visibility: Visibility::Exact, ..settings.clone() };
     let (mean, [_, num]) =
         filter::ellipse_mean(surface, &pixel.footprint, Some(pixel.displacement), &settings, &mut TexelSet::default());
     ensure(num == exact.len() as u64, || format!("{num} texels counted of {}", exact.len()))?;
-    let fallback = isotropic::bilinear(surface, scan.index, pixel.footprint.center);
+    let fallback = isotropic::bilinear(surface, index, pixel.footprint.center);
     ensure(num > 0 || mean == fallback, || format!("{mean:?} from no texel, {fallback:?} at the hit"))
 }
 
