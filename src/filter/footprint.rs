@@ -24,7 +24,7 @@ use crate::simd::PixelLanes;
 
 /// Longest derivative that is kept, in texture repeats a pixel: a footprint of that length holds the mean of all texels
 /// as well as a longer one does.
-const MAX_LENGTH: f32 = 16.0;
+pub(super) const MAX_LENGTH: f32 = 16.0;
 
 /// The derivatives of the texture coordinates of eight pixels, in repeats a pixel.
 #[derive(Clone, Copy, Debug)]

@@ -5,6 +5,7 @@
 
 use super::bin::{Bins, TileGrid};
 use super::edge::Rect;
+use super::block::{QuadBlock, SHADED_BLOCK};
 use super::gather::{SeenQuad, gather};
 use super::quad::{AttributePlanes, QuadPair};
 use super::scratch::{Borrowed, Scratch};
@@ -36,7 +37,7 @@ pub struct Rasterizer {
     scratches: Mutex<Vec<Scratch>>,
 }
 
-/// Draws one frame; see [`Rasterizer::draw`].
+/// Draws one frame, shaded pair by pair; see [`Rasterizer::draw`].
 pub fn draw(
     geometry: &Geometry,
     scene: &Scene,
@@ -44,19 +45,20 @@ pub fn draw(
     shade: &(impl Fn(&QuadPair) -> [PixelLanes; 3] + Sync),
     frame: &mut Frame,
 ) -> RasterStats {
-    Rasterizer::default().draw(geometry, scene, settings, shade, frame)
+    let shade = |block: &QuadBlock, colors: &mut Vec<_>| colors.extend(block.pairs().map(|pair| shade(&pair)));
+    Rasterizer::default().draw(geometry, scene, settings, &shade, frame)
 }
 
 impl Rasterizer {
-    /// Draws the triangles of `geometry`, which must have been projected from `scene` under `settings`. `shade` gives the
-    /// linear red, green and blue of eight pixels; each lane's result must depend on that lane's quad only. The frame is
-    /// resized to the settings and overwritten.
+    /// Draws the triangles of `geometry`, which must have been projected from `scene` under `settings`. `shade` appends
+    /// the linear red, green and blue of eight pixels for each pair of a block, which must depend on that block only. The
+    /// frame is resized to the settings and overwritten.
     pub fn draw(
         &mut self,
         geometry: &Geometry,
         scene: &Scene,
         settings: &Settings,
-        shade: &(impl Fn(&QuadPair) -> [PixelLanes; 3] + Sync),
+        shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
         frame: &mut Frame,
     ) -> RasterStats {
         let grid = TileGrid::new(settings);
@@ -110,7 +112,7 @@ impl Painter<'_> {
         tile: usize,
         rows: &mut [&mut [Pixel]],
         scratch: &mut Scratch,
-        shade: &(impl Fn(&QuadPair) -> [PixelLanes; 3] + Sync),
+        shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
     ) -> u64 {
         let rect = self.grid.rect(tile);
         scratch.list.clear();
@@ -147,14 +149,13 @@ impl Painter<'_> {
         }
     }
 
-    /// Makes the attribute planes of the triangles seen, and the order of the quads by material.
+    /// Makes the attribute planes of the triangles seen.
     fn find_planes(&self, scratch: &mut Scratch) {
-        let Scratch { list, quads, slots, planes, materials, order, .. } = scratch;
+        let Scratch { list, quads, slots, planes, materials, .. } = scratch;
         slots.clear();
         slots.resize(list.len(), NONE);
         materials.clear();
-        order.clear();
-        for (place, quad) in quads.iter_mut().enumerate() {
+        for quad in quads.iter_mut() {
             let slot = &mut slots[quad.triangle as usize];
             if *slot == NONE {
                 *slot = materials.len() as u32;
@@ -166,35 +167,31 @@ impl Painter<'_> {
                 materials.push(self.scene.meshes[triangle.mesh as usize].material as u32);
             }
             quad.triangle = *slot;
-            order.push(u64::from(materials[*slot as usize]) << 32 | place as u64);
+            quad.material = materials[*slot as usize];
         }
-        // Places are unique, so the unstable sort (which does not allocate) is a stable one by material.
-        order.sort_unstable();
     }
 
-    /// Shades the quads two by two and adds their colours to the pixels.
+    /// Shades the quads block by block and adds their colours to the pixels.
     fn shade_quads(
         &self,
         rect: &Rect,
         rows: &mut [&mut [Pixel]],
-        scratch: &Scratch,
-        shade: &(impl Fn(&QuadPair) -> [PixelLanes; 3] + Sync),
+        scratch: &mut Scratch,
+        shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
     ) -> u64 {
+        let Scratch { quads, planes, colors, .. } = scratch;
         let share = 1.0 / self.settings.msaa as f32;
+        let block_of = |quad: &SeenQuad| quad.origin.map(|c| usize::from(c) / SHADED_BLOCK);
         let mut num_shaded = 0;
-        for run in scratch.order.chunk_by(|a, b| a >> 32 == b >> 32) {
-            for pair in run.chunks(2) {
-                let [first, second] = [pair[0], pair[pair.len() - 1]].map(|key| &scratch.quads[key as u32 as usize]);
-                let mut coverage = [0; 8];
-                coverage[..4].copy_from_slice(&first.coverage);
-                if pair.len() == 2 {
-                    coverage[4..].copy_from_slice(&second.coverage);
+        for block in quads.chunk_by_mut(|a, b| block_of(a) == block_of(b)) {
+            // The stable sort keeps the order of places and triangles.
+            block.sort_by_key(|quad| quad.material);
+            for quads in block.chunk_by(|a, b| a.material == b.material) {
+                colors.clear();
+                shade(&QuadBlock { material: quads[0].material as usize, tile: rect.min, quads, planes }, colors);
+                for (pair, color) in quads.chunks(2).zip(colors.iter()) {
+                    num_shaded += add(rows, pair, share, color);
                 }
-                let places = [first, second].map(|quad| quad.origin);
-                let origin = places.map(|[x, y]| [rect.min[0] + i32::from(x), rect.min[1] + i32::from(y)]);
-                let planes = [first, second].map(|quad| &scratch.planes[quad.triangle as usize]);
-                let colors = shade(&QuadPair::new((pair[0] >> 32) as usize, origin, coverage, planes));
-                num_shaded += add(rows, places, &coverage, share, colors);
             }
         }
         num_shaded
@@ -220,28 +217,25 @@ impl Painter<'_> {
     }
 }
 
-/// Adds the colours of two quads to the pixels, `share` for each sample; gives how many pixels took part.
+/// Adds the colours of one or two quads to the pixels, `share` for each sample; gives how many pixels took part.
 #[inline]
-fn add(
-    rows: &mut [&mut [Pixel]],
-    places: [[u16; 2]; 2],
-    coverage: &[u8; 8],
-    share: f32,
-    colors: [PixelLanes; 3],
-) -> u64 {
-    let shares = PixelLanes::new(coverage.map(|count| f32::from(count) * share));
-    let [r, g, b] = colors.map(|color| (color * shares).to_array());
-    let shares = shares.to_array();
+fn add(rows: &mut [&mut [Pixel]], pair: &[SeenQuad], share: f32, colors: &[PixelLanes; 3]) -> u64 {
+    let [r, g, b] = colors.map(PixelLanes::to_array);
     let mut num = 0;
-    for half in 0..4 {
-        let [x, y] = places[half / 2].map(usize::from);
-        // Below the frame's last row there may be none, or an empty one.
-        let Some(row) = rows.get_mut(y + half % 2).and_then(|row| row.get_mut(x..)) else { continue };
-        for (lane, pixel) in (half * 2..half * 2 + 2).zip(row) {
-            if coverage[lane] > 0 {
-                let color = [r[lane], g[lane], b[lane], shares[lane]];
-                (0..4).for_each(|i| pixel[i] += color[i]);
-                num += 1;
+    for (i, quad) in pair.iter().enumerate() {
+        let [x, y] = quad.origin.map(usize::from);
+        for half in 0..2 {
+            // Below the frame's last row there may be none, or an empty one.
+            let Some(row) = rows.get_mut(y + half).and_then(|row| row.get_mut(x..)) else { continue };
+            for (column, pixel) in row.iter_mut().take(2).enumerate() {
+                let lane = 2 * half + column;
+                let share = f32::from(quad.coverage[lane]) * share;
+                if share > 0.0 {
+                    let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);
+                    (0..3).for_each(|c| pixel[c] += color[c]);
+                    pixel[3] += share;
+                    num += 1;
+                }
             }
         }
     }

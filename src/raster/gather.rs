@@ -3,6 +3,7 @@
 //! Quads start on even columns and rows of the frame. Those of one quad come in the order of their triangles, so that
 //! a pixel's sum does not depend on the tiling.
 
+use super::block::SHADED_BLOCK;
 use super::tile::{NONE, VisibilityBuffer};
 use crate::simd::u32x8;
 
@@ -15,23 +16,26 @@ pub(super) struct SeenQuad {
     pub(super) origin: [u16; 2],
     /// How many samples of each pixel see the triangle, lane `2 * dy + dx`.
     pub(super) coverage: [u8; 4],
+    /// The triangle's material, when it is known.
+    pub(super) material: u32,
 }
 
-/// Lists what `buffer` sees, quad by quad.
+/// Lists what `buffer` sees, block by block and quad by quad.
 pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<SeenQuad>) {
     seen.clear();
     let [num_columns, num_rows] = buffer.size();
-    for row in (0..num_rows).step_by(2) {
-        for column in 0..num_columns {
+    let places = (0..num_rows.div_ceil(SHADED_BLOCK)).flat_map(|block| (0..num_columns).map(move |column| (block, column)));
+    for (block, column) in places {
+        for row in (block * SHADED_BLOCK..num_rows.min((block + 1) * SHADED_BLOCK)).step_by(2) {
             let pixels: [[u32x8; 2]; S] =
                 std::array::from_fn(|s| [buffer.triangles(s, column, row), buffer.triangles(s, column, row + 1)]);
             let first = pixels[0][0].as_array()[0];
             let differs = pixels.iter().flatten().fold(u32x8::ZERO, |all, p| all | (*p ^ u32x8::splat(first)));
-            let origin = |quad: usize| [(column * 8 + quad * 2) as u16, row as u16];
+            let origin = |quad: usize| [(column * SHADED_BLOCK + quad * 2) as u16, row as u16];
             if differs != u32x8::ZERO {
                 (0..4).for_each(|quad| gather_quad(&pixels, quad, origin(quad), seen));
             } else if first != NONE {
-                let whole = |quad| SeenQuad { triangle: first, origin: origin(quad), coverage: [S as u8; 4] };
+                let whole = |quad| SeenQuad { triangle: first, origin: origin(quad), coverage: [S as u8; 4], material: 0 };
                 seen.extend((0..4).map(whole));
             }
         }
@@ -53,7 +57,7 @@ fn gather_quad<const S: usize>(pixels: &[[u32x8; 2]; S], quad: usize, origin: [u
                 at -= 1;
             }
             if at == start || seen[at - 1].triangle != triangle {
-                seen.insert(at, SeenQuad { triangle, origin, coverage: [0; 4] });
+                seen.insert(at, SeenQuad { triangle, origin, coverage: [0; 4], material: 0 });
                 at += 1;
             }
             seen[at - 1].coverage[lane] += 1;

@@ -10,6 +10,7 @@
 
 mod attributes;
 mod bin;
+mod block;
 mod draw;
 mod edge;
 mod gather;
@@ -18,6 +19,7 @@ mod scratch;
 mod tile;
 
 pub use bin::{Bins, TileGrid, hit_counts};
+pub use block::{QuadBlock, SHADED_BLOCK};
 pub use draw::{RasterStats, Rasterizer, draw};
 pub use edge::{BLOCK, Edges, Rect, Row};
 pub use quad::{AttributePlanes, LitLanes, LitPlanes, Plane, QuadPair};

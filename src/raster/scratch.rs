@@ -6,6 +6,7 @@
 use super::gather::SeenQuad;
 use super::quad::AttributePlanes;
 use super::tile::VisibilityBuffer;
+use crate::simd::PixelLanes;
 use std::sync::{Mutex, PoisonError};
 
 /// Buffers for one tile.
@@ -21,8 +22,8 @@ pub(super) struct Scratch {
     pub(super) planes: Vec<AttributePlanes>,
     /// Material of each slot.
     pub(super) materials: Vec<u32>,
-    /// Order of `quads`: material in the upper half, place in the lower.
-    pub(super) order: Vec<u64>,
+    /// Colours of the pairs of a block.
+    pub(super) colors: Vec<[PixelLanes; 3]>,
 }
 
 /// A [`Scratch`] on loan from the pool.

@@ -6,13 +6,14 @@
 //!    `shade` the colour.
 //! 4. `raster` adds the colours up to pixels.
 
+mod patches;
 mod quads;
 mod tables;
 
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::geometry::Geometry;
-use crate::raster::Rasterizer;
+use crate::raster::{QuadBlock, Rasterizer};
 use crate::scene::{Camera, Scene};
 use crate::settings::Settings;
 use quads::QuadShader;
@@ -114,16 +115,15 @@ impl Renderer {
         geometry.project(scene, settings);
         let projected = clock();
         let shader = QuadShader::new(scene, settings, tables);
-        let shade_us = AtomicU64::new(0);
-        let shade = |pair: &crate::raster::QuadPair| {
+        let shade_ns = AtomicU64::new(0);
+        let shade = |block: &QuadBlock, colors: &mut Vec<_>| {
             let before = clock();
-            let color = shader.shade(pair);
-            shade_us.fetch_add(((clock() - before) * 1e3) as u64, Ordering::Relaxed);
-            color
+            shader.shade(block, colors);
+            shade_ns.fetch_add(((clock() - before) * 1e6) as u64, Ordering::Relaxed);
         };
         let mut frame = Frame::filled(settings.width, settings.height, [0.0; 4]);
         let counts = rasterizer.draw(geometry, scene, settings, &shade, &mut frame);
-        let shade_ms = shade_us.into_inner() as f64 * 1e-3;
+        let shade_ms = shade_ns.into_inner() as f64 * 1e-6;
         let [texels_tested, texels_visible] = shader.num_texels();
         let stats = Stats {
             geometry_ms: projected - start,

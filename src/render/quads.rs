@@ -1,8 +1,8 @@
 //! The colour of two quads: view slope, hits, footprints, texels, light.
 
 use super::tables::Tables;
-use crate::filter::{self, Filtered, TexelSet, horizon, isotropic, parallax, truth};
-use crate::raster::{LitPlanes, QuadPair};
+use crate::filter::{self, Filtered, TexelSet, isotropic, parallax, truth};
+use crate::raster::{LitPlanes, QuadBlock, QuadPair};
 use crate::relief::{HeightField, displacement, march};
 use crate::scene::{Material, Scene};
 use crate::settings::{Derivatives, Filter, Formulas, Lighting, Settings};
@@ -15,17 +15,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Shades quads of a frame.
 pub(super) struct QuadShader<'a> {
     scene: &'a Scene,
-    settings: &'a Settings,
-    tables: &'a Tables,
+    pub(super) settings: &'a Settings,
+    pub(super) tables: &'a Tables,
     texels: [AtomicU64; 2],
 }
 
-/// What all pixels of a pair have in common.
-struct Ground<'a> {
-    pair: &'a QuadPair<'a>,
-    material: &'a Material,
-    surface: &'a Surface,
-    field: Option<&'a HeightField>,
+/// What all pixels of a block have in common.
+pub(super) struct Ground<'a> {
+    pub(super) material: &'a Material,
+    pub(super) surface: &'a Surface,
+    pub(super) field: Option<&'a HeightField>,
 }
 
 impl<'a> QuadShader<'a> {
@@ -38,17 +37,22 @@ impl<'a> QuadShader<'a> {
         self.texels.each_ref().map(|num| num.load(Ordering::Relaxed))
     }
 
-    /// The linear colour of the eight pixels; helper lanes are 0.
-    pub(super) fn shade(&self, pair: &QuadPair) -> [PixelLanes; 3] {
-        let material = &self.scene.materials[pair.material];
-        let colors = match &material.surface {
-            None => each_covered(pair, |lane| self.plain(pair, material, lane)),
-            Some(surface) => {
-                let field = self.tables.fields[pair.material].as_deref().filter(|_| self.settings.parallax);
-                self.textured(&Ground { pair, material, surface, field })
+    /// Appends the linear colours of a block's pairs; helper lanes are 0.
+    pub(super) fn shade(&self, block: &QuadBlock, colors: &mut Vec<[PixelLanes; 3]>) {
+        let material = &self.scene.materials[block.material];
+        let field = self.tables.fields[block.material].as_deref().filter(|_| self.settings.parallax);
+        match &material.surface {
+            Some(surface) if self.settings.filter == Filter::Horizon => {
+                self.horizon(&Ground { material, surface, field }, block, colors);
             }
-        };
-        [0, 1, 2].map(|c| PixelLanes::new(colors.map(|color| color[c])))
+            surface => colors.extend(block.pairs().map(|pair| {
+                let colors = match surface {
+                    None => each_covered(&pair, |lane| self.plain(&pair, material, lane)),
+                    Some(surface) => self.textured(&Ground { material, surface, field }, &pair),
+                };
+                in_lanes(&colors)
+            })),
+        }
     }
 
     fn plain(&self, pair: &QuadPair, material: &Material, lane: usize) -> Vec3 {
@@ -56,20 +60,18 @@ impl<'a> QuadShader<'a> {
         material.diffuse * lights.diffuse(Vec3::Z) + lights.specular(Vec3::Z, material)
     }
 
-    fn textured(&self, ground: &Ground) -> [Vec3; 8] {
-        let depth = ground.field.map_or(0.0, |_| ground.surface.relief_depth);
-        let reach = displacement(&ground.pair.view, depth);
+    fn textured(&self, ground: &Ground, pair: &QuadPair) -> [Vec3; 8] {
         match self.settings.filter {
-            Filter::Truth => each_covered(ground.pair, |lane| self.truth(ground, lane)),
-            Filter::Parallax => self.parallax(ground),
-            Filter::Horizon => self.horizon(ground, &reach),
-            _ => self.at_hits(ground, &reach),
+            Filter::Truth => each_covered(pair, |lane| self.truth(ground, pair, lane)),
+            Filter::Parallax => self.parallax(ground, pair),
+            _ => self.at_hits(ground, pair),
         }
     }
 
     /// The filters that put the footprint around the hit.
-    fn at_hits(&self, ground: &Ground, reach: &[PixelLanes; 2]) -> [Vec3; 8] {
-        let Ground { pair, surface, field, .. } = *ground;
+    fn at_hits(&self, ground: &Ground, pair: &QuadPair) -> [Vec3; 8] {
+        let Ground { surface, field, .. } = *ground;
+        let reach = &ground.reach(pair);
         let depth = field.map_or(PixelLanes::ZERO, |field| march(field, &pair.uv, reach));
         let offset = [reach[0] * depth, reach[1] * depth];
         let place = [pair.uv[0] + offset[0], pair.uv[1] + offset[1]];
@@ -92,38 +94,14 @@ impl<'a> QuadShader<'a> {
                     mean
                 }
             };
-            self.lit(ground, lane, &texel)
+            self.lit(ground, pair, lane, &texel)
         });
         self.count(num_texels);
         colors
     }
 
-    fn horizon(&self, ground: &Ground, reach: &[PixelLanes; 2]) -> [Vec3; 8] {
-        let Ground { pair, surface, material, field } = *ground;
-        let none = [PixelLanes::ZERO; 2];
-        let differences = filter::differences(&pair.uv, &none, (Derivatives::Flat, Formulas::Meant));
-        let mut num_rows = 0;
-        let colors = each_covered(pair, |lane| {
-            let footprint = differences.footprint(&pair.uv, lane);
-            let reach = reach.map(|lanes| lanes.as_array()[lane]);
-            let lights = self.lights_at(pair, lane, pixel_center(pair, lane));
-            // The tables hold unlit colour.
-            let far = self.tables.far_fields[pair.material].as_deref().filter(|_| lights.is_none() && field.is_some());
-            let (texel, rows) = match far {
-                Some(far) => horizon::near_or_far_mean(surface, far, &footprint, reach, self.settings),
-                None => horizon::visible_mean(surface, &footprint, reach, self.settings, lights.as_ref()),
-            };
-            num_rows += rows;
-            // Lambert is in the sums already; the highlight is that of the mean normal.
-            let specular = lights.map_or(Vec3::ZERO, |lights| lights.specular(Vec3::from(texel.normal), material));
-            albedo(ground, &texel) + specular
-        });
-        self.count([num_rows, 0]);
-        colors
-    }
-
-    fn parallax(&self, ground: &Ground) -> [Vec3; 8] {
-        let Ground { pair, surface, field, .. } = *ground;
+    fn parallax(&self, ground: &Ground, pair: &QuadPair) -> [Vec3; 8] {
+        let Ground { surface, field, .. } = *ground;
         let none = [PixelLanes::ZERO; 2];
         let differences = filter::differences(&pair.uv, &none, (Derivatives::Flat, Formulas::Meant));
         let depth = field.map_or(0.0, |_| surface.relief_depth);
@@ -136,15 +114,15 @@ impl<'a> QuadShader<'a> {
                 let (uv, view) = pair.planes[lane / 4].at(x, y);
                 let reach = displacement(&view, depth).map(|lanes| lanes.as_array()[0]);
                 let base = uv.map(|lanes| crate::relief::finite(lanes).as_array()[0]);
-                sum + self.lit(ground, lane, &parallax::trace(surface, base, reach, size))
+                sum + self.lit(ground, pair, lane, &parallax::trace(surface, base, reach, size))
             });
             sum / self.tables.offsets.len() as f32
         })
     }
 
     /// Every sample a ray of its own, shaded on its own.
-    fn truth(&self, ground: &Ground, lane: usize) -> Vec3 {
-        let Ground { pair, surface, field, .. } = *ground;
+    fn truth(&self, ground: &Ground, pair: &QuadPair, lane: usize) -> Vec3 {
+        let Ground { surface, field, .. } = *ground;
         let planes = pair.planes[lane / 4];
         let [center_x, center_y] = pixel_center(pair, lane);
         let depth = field.map_or(0.0, |_| surface.relief_depth);
@@ -163,7 +141,7 @@ impl<'a> QuadShader<'a> {
                 let is_sample = counts.as_array()[i] > 0.0 && inverse_w.as_array()[i] > 0.0;
                 if is_sample && place.iter().all(|c| c.abs() < 1e6) {
                     let texel = truth::sample(surface, place);
-                    sum += self.lit_at(ground, lane, [x.as_array()[i], y.as_array()[i]], &texel);
+                    sum += self.lit_at(ground, pair, lane, [x.as_array()[i], y.as_array()[i]], &texel);
                     num += 1.0;
                 }
             }
@@ -171,26 +149,26 @@ impl<'a> QuadShader<'a> {
         sum / f32::max(num, 1.0)
     }
 
-    fn count(&self, num_texels: [u64; 2]) {
+    pub(super) fn count(&self, num_texels: [u64; 2]) {
         self.texels.iter().zip(num_texels).for_each(|(total, num)| {
             total.fetch_add(num, Ordering::Relaxed);
         });
     }
 
-    fn lit(&self, ground: &Ground, lane: usize, texel: &Filtered) -> Vec3 {
-        self.lit_at(ground, lane, pixel_center(ground.pair, lane), texel)
+    fn lit(&self, ground: &Ground, pair: &QuadPair, lane: usize, texel: &Filtered) -> Vec3 {
+        self.lit_at(ground, pair, lane, pixel_center(pair, lane), texel)
     }
 
     /// The colour of a filtered texel seen at a place on the screen.
-    fn lit_at(&self, ground: &Ground, lane: usize, screen: [f32; 2], texel: &Filtered) -> Vec3 {
+    fn lit_at(&self, ground: &Ground, pair: &QuadPair, lane: usize, screen: [f32; 2], texel: &Filtered) -> Vec3 {
         let color = albedo(ground, texel);
-        let Some(lights) = self.lights_at(ground.pair, lane, screen) else { return color };
+        let Some(lights) = self.lights_at(pair, lane, screen) else { return color };
         let normal = Vec3::from(texel.normal);
         color * lights.diffuse(normal) + lights.specular(normal, ground.material)
     }
 
     /// The lights at a place on the screen, if there is lighting.
-    fn lights_at(&self, pair: &QuadPair, lane: usize, [x, y]: [f32; 2]) -> Option<LocalLights> {
+    pub(super) fn lights_at(&self, pair: &QuadPair, lane: usize, [x, y]: [f32; 2]) -> Option<LocalLights> {
         let planes = pair.planes[lane / 4];
         let lit = planes.lit.as_deref().filter(|_| self.settings.lighting == Lighting::Lit)?;
         let [a, b, c] = planes.inverse_w;
@@ -203,7 +181,18 @@ impl<'a> QuadShader<'a> {
     }
 }
 
-fn albedo(ground: &Ground, texel: &Filtered) -> Vec3 {
+impl Ground<'_> {
+    /// How far the view rays move along the texture down to the deepest relief, in repeats.
+    pub(super) fn reach(&self, pair: &QuadPair) -> [PixelLanes; 2] {
+        displacement(&pair.view, self.field.map_or(0.0, |_| self.surface.relief_depth))
+    }
+}
+
+pub(super) fn in_lanes(colors: &[Vec3; 8]) -> [PixelLanes; 3] {
+    [0, 1, 2].map(|c| PixelLanes::new(colors.map(|color| color[c])))
+}
+
+pub(super) fn albedo(ground: &Ground, texel: &Filtered) -> Vec3 {
     Vec3::from(texel.color) * ground.material.diffuse * (ground.surface.color_scale / FULL_F32)
 }
 
@@ -216,7 +205,7 @@ fn each_covered(pair: &QuadPair, mut color: impl FnMut(usize) -> Vec3) -> [Vec3;
 }
 
 /// Where a lane's pixel has its centre on the screen.
-fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
+pub(super) fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
     let [x, y] = pair.origin[lane / 4];
     [(x + (lane as i32 & 1)) as f32 + 0.5, (y + (lane as i32 >> 1 & 1)) as f32 + 0.5]
 }

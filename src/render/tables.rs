@@ -1,11 +1,11 @@
 //! What is made before the first frame: height fields, far-field tables, sample positions.
 
-use crate::filter::{FarField, parallax, truth};
+use crate::filter::{FarField, horizon, parallax, truth};
 use crate::relief::HeightField;
 use crate::scene::{Material, Scene};
 use crate::settings::{Filter, Lighting, Settings};
 use crate::texture::Surface;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// What every frame of a scene needs besides the scene.
 #[derive(Debug)]
@@ -18,6 +18,8 @@ pub(super) struct Tables {
     pub(super) kernel: truth::Kernel,
     /// Sample offsets of common practice.
     pub(super) offsets: Vec<[f32; 2]>,
+    /// Buffers of the horizon filter, one for each task that ever ran at once.
+    pub(super) scratches: Mutex<Vec<horizon::Scratch>>,
     /// Memory that `far_fields` were built for.
     far_field_mib: u32,
 }
@@ -30,6 +32,7 @@ impl Tables {
             far_fields: vec![None; scene.materials.len()],
             kernel: truth::Kernel::new(1),
             offsets: Vec::new(),
+            scratches: Mutex::default(),
             far_field_mib: 0,
         }
     }

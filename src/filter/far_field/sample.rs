@@ -3,24 +3,27 @@
 use super::encode::{UNITS, decode};
 use super::{FarField, FarImage};
 use crate::filter::texel_set::{RowQuadric, lane_columns};
-use crate::filter::{Ellipse, Filtered, Footprint};
+use crate::filter::{Ellipse, Filtered, Footprint, PixelFootprints};
 use crate::settings::{Formulas, Settings};
-use crate::simd::{TexelLanes, exp_negative, sum, u32x8};
+use crate::simd::{PixelLanes, TexelLanes, exp_negative, sum, u32x8};
 use crate::texture::{FULL_F32, Surface};
 
 /// Texels of a table across a footprint's shorter axis: at least this many, and less than twice as many.
 const TEXELS_ACROSS: f32 = 4.0;
 
+/// Most texels along the longer axis: a thin footprint at the horizon takes a coarser table.
+const TEXELS_ALONG: f32 = 64.0;
+
 /// Texels of the finest table across a footprint where the tables begin to count, and where nothing else counts.
 const HAND_OVER: [f32; 2] = [3.0, 4.0];
 
 impl FarField {
-    /// How much of a footprint's colour the tables give, 0 to 1: all of it where it is large.
+    /// How much of the colour of eight pixels the tables give, 0 to 1: all of it where a footprint is large.
     #[must_use]
-    pub fn share(&self, surface: &Surface, footprint: &Footprint, settings: &Settings) -> f32 {
-        let ellipse = Ellipse::new(footprint, surface.texels_per_repeat(self.first_level), Formulas::Meant);
-        let [short, _] = ellipse.bounded(settings.max_anisotropy).squared_axes();
-        ((2.0 * short.sqrt() - HAND_OVER[0]) / (HAND_OVER[1] - HAND_OVER[0])).clamp(0.0, 1.0)
+    pub fn shares(&self, surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> PixelLanes {
+        let across = pixels.width(surface.texels_per_repeat(self.first_level), settings.max_anisotropy);
+        let share = (across - HAND_OVER[0]) * (1.0 / (HAND_OVER[1] - HAND_OVER[0]));
+        share.fast_max(PixelLanes::ZERO).fast_min(PixelLanes::ONE)
     }
 
     /// The mean of what is seen in a footprint around its base coordinate, for a displacement in repeats.
@@ -49,7 +52,10 @@ impl FarField {
             ellipse.bounded(settings.max_anisotropy)
         };
         let last = surface.levels.len() - 1;
-        let fits = |level: &usize| 2.0 * at(*level).squared_axes()[0].sqrt() < 2.0 * TEXELS_ACROSS;
+        let fits = |level: &usize| {
+            let [short, long] = at(*level).squared_axes().map(f32::sqrt);
+            2.0 * short < 2.0 * TEXELS_ACROSS && 2.0 * long < TEXELS_ALONG
+        };
         let level = (self.first_level..last).find(fits).unwrap_or(last);
         (level, at(level).widened(settings.max_anisotropy, Formulas::Meant))
     }

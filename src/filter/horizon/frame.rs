@@ -1,0 +1,216 @@
+//! The coordinates of a sweep: lines along the displacement, and the pixels on them.
+//!
+//! Rows are texel rows across the longer axis of the displacement, counted in the walking direction: `q` is their distance
+//! from the middle of the patch. A line is known by `xi`, its distance from the middle line where `q = 0`:
+//!
+//! ```text
+//! x = e q + xi (1 + k q)
+//! ```
+//!
+//! with the shear `e = D_x / D_y`. On a plane the displacements of a picture are `D(p) = c (p - foot)`, where `foot` is the
+//! point under the eye: lines meet there, which is the spread `k = c / D`, and a texel at `q` and depth `d` is seen at
+//!
+//! ```text
+//! p = (q - d D) / (1 + d c)      from      q = p + d (D + c p).
+//! ```
+//!
+//! Curved surfaces have other growths along and across the lines, and displacements that differ from line to line.
+
+use super::kernel::Kernel;
+use super::pixels::{Conics, PixelFootprints};
+use crate::simd::{PixelLanes, sum};
+use crate::texture::{Level, Surface};
+
+/// Displacements shorter than this many texels do not hide anything that a texel could show.
+const FLAT: f32 = 1.0 / 64.0;
+
+/// How far, in radii of its ellipse and squared, a pixel's displacement may be from what the lines take it for.
+const MOST_MISFIT: f32 = 0.1;
+
+/// Least and greatest distance between lines over that in the middle of the patch.
+const SPREAD: [f32; 2] = [0.6, 1.6];
+
+/// Greatest growth `c`.
+const MOST_GROWTH: f32 = 0.5;
+
+/// Where lines and rows of a patch lie in one level.
+#[derive(Clone, Debug)]
+pub(super) struct Frame<'a> {
+    pub(super) level: &'a Level,
+    /// Whether rows run along v.
+    is_turned: bool,
+    /// Texels a repeat along the rows and across them.
+    texels: [f32; 2],
+    /// The middle in repeats and in texels, along the rows and across; texel centres lie at whole numbers.
+    middle: [f32; 2],
+    pub(super) origin: [f32; 2],
+    /// 1 where the walk goes to higher rows, else -1.
+    pub(super) toward: f32,
+    pub(super) shear: f32,
+    pub(super) spread: f32,
+    /// Rows down to the deepest relief in the middle, and how they grow per row and per texel across.
+    pub(super) depth: f32,
+    pub(super) growth: f32,
+    pub(super) tilt: f32,
+}
+
+/// A vector of pixels on the lines of a frame: the ellipse at line `xi` and seen row `p` has
+/// `r^2 = across (xi - xi_i)^2 + z^2`, `z = along (p - q_i + skew (xi - xi_i))`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kernels {
+    pub(super) xi: PixelLanes,
+    pub(super) q: PixelLanes,
+    pub(super) along: PixelLanes,
+    pub(super) skew: PixelLanes,
+    pub(super) across: PixelLanes,
+    pub(super) half_width: PixelLanes,
+    pub(super) half_height: PixelLanes,
+}
+
+impl Kernels {
+    #[inline(always)]
+    pub(super) fn lane(&self, i: usize) -> Kernel {
+        let at = |lanes: &PixelLanes| lanes.as_array()[i];
+        Kernel {
+            xi: at(&self.xi),
+            q: at(&self.q),
+            along: at(&self.along),
+            skew: at(&self.skew),
+            across: at(&self.across),
+            half_width: at(&self.half_width),
+            half_height: at(&self.half_height),
+        }
+    }
+}
+
+/// Sums over the picked lanes.
+fn total(pixels: &[PixelFootprints], picked: &[PixelLanes], of: impl Fn(&PixelFootprints) -> PixelLanes) -> f32 {
+    sum(pixels.iter().zip(picked).fold(PixelLanes::ZERO, |all, (pixels, picked)| all + (of(pixels) & *picked)))
+}
+
+/// The means over the picked lanes of place and displacement, in repeats.
+pub(super) fn means(pixels: &[PixelFootprints], picked: &[PixelLanes], num: usize) -> [[f32; 2]; 2] {
+    // Relative to one pixel, so that large coordinates lose nothing.
+    let lane = (0..8).find(|i| picked[0].as_array()[*i].to_bits() != 0).unwrap_or(0);
+    let first = pixels[0].center.map(|lanes| lanes.as_array()[lane]);
+    let inverse = 1.0 / num as f32;
+    let center = [0, 1].map(|i| first[i] + total(pixels, picked, |p| p.center[i] - first[i]) * inverse);
+    [center, [0, 1].map(|i| total(pixels, picked, |p| p.displacement[i]) * inverse)]
+}
+
+impl<'a> Frame<'a> {
+    /// The frame on a level around `middle` and `displacement` (means in repeats) of the picked pixels, without growth.
+    pub(super) fn new(
+        surface: &'a Surface,
+        index: usize,
+        [middle, displacement]: [[f32; 2]; 2],
+        is_long_along_u: bool,
+    ) -> Self {
+        let texels = surface.texels_per_repeat(index);
+        let [du, dv] = [displacement[0] * texels[0], displacement[1] * texels[1]];
+        let is_flat = du.abs().max(dv.abs()) < FLAT;
+        let is_turned = if is_flat { is_long_along_u } else { du.abs() > dv.abs() };
+        let turn = |[u, v]: [f32; 2]| if is_turned { [v, u] } else { [u, v] };
+        let level = if is_turned { &surface.transposed[index] } else { &surface.levels[index] };
+        let (middle, texels, [dx, dy]) = (turn(middle), turn(texels), turn([du, dv]));
+        let toward = if dy < 0.0 { -1.0 } else { 1.0 };
+        let (depth, shear) = if is_flat { (0.0, 0.0) } else { (dy.abs(), dx / dy * toward) };
+        let origin = [0, 1].map(|i| middle[i] * texels[i] - 0.5);
+        Self { level, is_turned, texels, middle, origin, toward, shear, spread: 0.0, depth, growth: 0.0, tilt: 0.0 }
+    }
+
+    fn turn<T>(&self, [u, v]: [T; 2]) -> [T; 2] {
+        if self.is_turned { [v, u] } else { [u, v] }
+    }
+
+    /// Place and displacement of pixels in this frame: along the rows and in the walking direction, from the middle.
+    #[inline]
+    fn place(&self, pixels: &PixelFootprints) -> [[PixelLanes; 2]; 2] {
+        let [x, y] = self.turn(pixels.center);
+        let [dx, dy] = self.turn(pixels.displacement);
+        let [tx, ty] = [self.texels[0], self.texels[1] * self.toward];
+        [[(x - self.middle[0]) * tx, (y - self.middle[1]) * ty], [dx * tx, dy * ty]]
+    }
+
+    /// Finds how displacements grow over the picked pixels. `None` where they grow in another way.
+    pub(super) fn fit(mut self, pixels: &[PixelFootprints], conics: &[Conics], picked: &[PixelLanes]) -> Option<Self> {
+        if self.depth == 0.0 {
+            return Some(self);
+        }
+        // Least squares, by the place on the middle's line and across it.
+        let [mut qq, mut qx, mut xx, mut q_along, mut x_along, mut x_across] = [PixelLanes::ZERO; 6];
+        for (pixels, &picked) in pixels.iter().zip(picked) {
+            let [[x, q], [along, across]] = self.growths(pixels);
+            (qq, qx, xx) = (qq + (q * q & picked), qx + (q * x & picked), xx + (x * x & picked));
+            (q_along, x_along) = (q_along + (q * along & picked), x_along + (x * along & picked));
+            x_across += x * across & picked;
+        }
+        let [qq, qx, xx, q_along, x_along, x_across] = [qq, qx, xx, q_along, x_along, x_across].map(sum);
+        let determinant = qq * xx - qx * qx;
+        if determinant > 1e-3 * qq * xx {
+            self.growth = (q_along * xx - x_along * qx) / determinant;
+            self.tilt = (x_along * qq - q_along * qx) / determinant;
+            self.spread = x_across / (xx * self.depth);
+        } else {
+            self.growth = (q_along + x_along) / (qq + xx).max(f32::MIN_POSITIVE);
+            self.spread = self.growth / self.depth;
+        }
+        let mut misfit = PixelLanes::ZERO;
+        for ((pixels, conic), &picked) in pixels.iter().zip(conics).zip(picked) {
+            let [[x, q], [along, across]] = self.growths(pixels);
+            let ry = along - q * self.growth - x * self.tilt;
+            let rx = across - x * (self.spread * self.depth) + ry * self.shear;
+            let ([a, c], b) = (self.turn([conic.a, conic.c]), conic.b * self.toward);
+            misfit = misfit.fast_max((a * rx * rx + b * rx * ry + c * ry * ry) / conic.f & picked);
+        }
+        let is_fit = misfit.simd_le(PixelLanes::splat(MOST_MISFIT)).all();
+        (is_fit && self.growth.abs() <= MOST_GROWTH).then_some(self)
+    }
+
+    /// Pixels across and along the middle's line, and how their displacements differ from the middle's along and across it.
+    #[inline]
+    fn growths(&self, pixels: &PixelFootprints) -> [[PixelLanes; 2]; 2] {
+        let [[x, q], [dx, dq]] = self.place(pixels);
+        [[x - q * self.shear, q], [dq - self.depth, dx - dq * self.shear]]
+    }
+
+    /// The pixels' ellipses on the lines.
+    #[inline]
+    pub(super) fn kernels(&self, pixels: &PixelFootprints, conics: &Conics) -> Kernels {
+        let [[x, q], _] = self.place(pixels);
+        let scale = q * self.spread + 1.0;
+        let xi = (x - q * self.shear) / scale;
+        let shear = xi * self.spread + self.shear;
+        let ([a, c], b) = (self.turn([conics.a, conics.c]), conics.b * self.toward);
+        // F = A C - B^2 / 4, which the shear keeps: so A' - B'^2 / 4C' is 1 / C F, without a difference that cancels.
+        let c = ((a * shear + b) * shear + c).fast_max(conics.f / a);
+        let b = (a * shear * 2.0 + b) * scale;
+        let width = c.sqrt() / scale;
+        Kernels {
+            xi,
+            q,
+            along: (c / conics.f).sqrt(),
+            skew: b / (c * 2.0),
+            across: PixelLanes::ONE / (width * width),
+            half_width: width,
+            half_height: a.sqrt(),
+        }
+    }
+
+    /// Most rows down to the deepest relief between two lines, in their middles.
+    pub(super) fn greatest_depth(&self, lines: [f32; 2]) -> f32 {
+        lines.into_iter().fold(self.depth, |most, xi| most.max(self.depth + self.tilt * xi))
+    }
+
+    /// How much farther apart than in the middle lines are at row `q`.
+    fn scale_at(&self, q: f32) -> f32 {
+        1.0 + self.spread * q
+    }
+
+    /// The greatest distance between lines over that in the middle, between two rows; `None` where lines run together.
+    pub(super) fn greatest_scale(&self, rows: [f32; 2]) -> Option<f32> {
+        let [a, b] = rows.map(|q| self.scale_at(q));
+        let is_regular = |scale: f32| (SPREAD[0]..=SPREAD[1]).contains(&scale);
+        (is_regular(a) && is_regular(b)).then(|| a.max(b))
+    }
+}

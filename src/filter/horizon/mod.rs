@@ -1,0 +1,298 @@
+//! The floating horizon filter: the visible relief of a footprint in one sweep.
+//!
+//! A texel at `t` and depth `d` is seen over the base coordinate `t - d D`, with the displacement `D` down to the deepest
+//! relief. Along a line in the direction of `D`, walked from its near end, the eye sees the part of the relief where the
+//! projected place makes a new record, and nothing else. So with the places `p_i` of the line's texels:
+//!
+//! ```text
+//! M = entry of the line into the ellipse of formula (2)
+//! for each texel i:  w_i = G(min(p_i, exit)) - G(M) if that is positive;  M = max(M, p_i);  stop when M >= exit
+//! ```
+//!
+//! where `G` is the integral of the kernel `exp(-2 r^2)` along the line, so the weights of a line sum to its share of the
+//! ellipse whatever the relief. The segment between two texels is linear: its colour is taken at the middle of its
+//! visible part. (The floating horizon: a hidden-surface algorithm for functions of two variables, here run inside a
+//! texture footprint; the weight is exact where the classic algorithm draws lines.)
+//!
+//! Neighbouring pixels see the same texels, so a *patch* of them is swept once ([`sweep`]): rows across the longer axis of
+//! the displacement, on a transposed copy of the texels where that is u, and eight lines as lanes. What a line sees is
+//! kept bin by bin, and each pixel weighs the bins by its own Gaussian ([`kernel`]). Where a patch lies and how its
+//! lines run says [`frame`]; pixels that no patch can hold well are split into smaller ones, at last into single pixels.
+
+mod frame;
+mod kernel;
+mod pixels;
+mod sweep;
+
+pub use pixels::PixelFootprints;
+
+use super::{FarField, Filtered, Footprint, isotropic};
+use crate::settings::Settings;
+use crate::shade::LocalLights;
+use crate::simd::PixelLanes;
+use crate::texture::Surface;
+use frame::{Frame, means};
+use kernel::{Kernel, Totals};
+use pixels::Conics;
+use sweep::{Grid, MOST_LINES, Profile};
+
+/// Most rows of a pixel's sweep; a longer one takes a coarser level. Bounds the time of a pixel for any input.
+pub const MAX_ROWS: f32 = 512.0;
+
+/// Most pixels of a patch.
+pub const MOST_PIXELS: usize = 64;
+
+/// Vectors of pixels that hold them.
+const MOST_VECTORS: usize = MOST_PIXELS / 8;
+
+/// Lines across the widest ellipse of a patch, unless that puts them farther apart than [`WIDEST`].
+const NUM_LINES: f32 = 6.0;
+
+/// Greatest distance between lines in texels: eight lines and their neighbours lie within eight texels.
+const WIDEST: f32 = 0.857;
+
+/// Most bins of a patch of several pixels.
+const MOST_BINS: f32 = 256.0;
+
+/// How much longer the widest ellipse of a patch may be across than the narrowest, squared.
+const MOST_RATIO: f32 = 2.25;
+
+/// Bins along the shortest ellipse of a patch: of a picture, of a picture with lights, and where one pixel is asked for.
+pub const PICTURE_BINS: f32 = 6.0;
+/// As [`PICTURE_BINS`], under lights, which are asked for each bin.
+pub const LIT_BINS: f32 = 16.0;
+const PIXEL_BINS: f32 = 128.0;
+
+/// Buffers of sweeps, kept between them.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    unlit: Profile<3>,
+    lit: Profile<6>,
+    conics: Vec<Conics>,
+    kernels: Vec<Kernel>,
+    totals: Vec<Totals>,
+}
+
+/// The mean of the visible texels of a footprint whose centre is the base coordinate, and the number of rows swept. `lights` are asked per visible texel.
+#[must_use]
+pub fn visible_mean(
+    surface: &Surface,
+    footprint: &Footprint,
+    displacement: [f32; 2],
+    settings: &Settings,
+    lights: Option<&LocalLights>,
+) -> (Filtered, u64) {
+    let pixels = [PixelFootprints::splat(footprint, displacement)];
+    let lights = lights.map(std::slice::from_ref).unwrap_or_default();
+    let mut found = [Filtered::default()];
+    let patches = Patches { surface, far: None, pixels: &pixels, settings, num_bins: PIXEL_BINS };
+    let num_rows = patches.means(&[0], lights, &mut Scratch::default(), &mut found);
+    (found[0], num_rows)
+}
+
+/// Up to [`MOST_PIXELS`] pixels of one surface that may share sweeps.
+#[derive(Clone, Copy, Debug)]
+pub struct Patches<'a> {
+    /// Their texture.
+    pub surface: &'a Surface,
+    /// Tables that know where a level loses too much of what hides.
+    pub far: Option<&'a FarField>,
+    /// The pixels, eight a vector.
+    pub pixels: &'a [PixelFootprints],
+    /// Lines and anisotropy.
+    pub settings: &'a Settings,
+    /// Bins along the shortest ellipse: how finely the kernel is cut. See [`PICTURE_BINS`].
+    pub num_bins: f32,
+}
+
+/// The extent of a patch: least and greatest `xi` and `q` of its ellipses, the greatest width and the least height.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    xi: [f32; 2],
+    q: [f32; 2],
+    half_width: f32,
+    half_height: f32,
+    /// Rows times lines of all pixels, each swept on its own.
+    area: f32,
+}
+
+impl Patches<'_> {
+    /// The means of the picked pixels (vector times 8 plus lane, ascending), into `found`. With `lights`, one a pick,
+    /// they hold diffuse light. Returns the number of rows swept, eight lines each.
+    pub fn means(&self, picks: &[u8], lights: &[LocalLights], scratch: &mut Scratch, found: &mut [Filtered]) -> u64 {
+        if picks.is_empty() {
+            return 0;
+        }
+        if let Some(num_rows) = self.patch(picks, lights, scratch, found) {
+            return num_rows;
+        }
+        let middle = picks.len() / 2;
+        let (near_lights, far_lights) = lights.split_at(if lights.is_empty() { 0 } else { middle });
+        let (near, far) = found.split_at_mut(middle);
+        self.means(&picks[..middle], near_lights, scratch, near)
+            + self.means(&picks[middle..], far_lights, scratch, far)
+    }
+
+    /// Sweeps the picked pixels as one patch; `None` where they do not fit into one.
+    fn patch(
+        &self,
+        picks: &[u8],
+        lights: &[LocalLights],
+        scratch: &mut Scratch,
+        found: &mut [Filtered],
+    ) -> Option<u64> {
+        let Scratch { unlit, lit, conics, kernels, totals } = scratch;
+        // Picks ascend: only these vectors hold any.
+        let first_vector = usize::from(picks[0] / 8);
+        let pixels = &self.pixels[first_vector..=usize::from(picks[picks.len() - 1] / 8)];
+        let picked = &masks(picks, first_vector)[..pixels.len()];
+        let (index, middle) = self.choose_level(pixels, picked, picks.len(), !lights.is_empty())?;
+        let texels = self.surface.texels_per_repeat(index);
+        conics.clear();
+        conics.extend(pixels.iter().map(|pixels| pixels.conics(texels, self.settings.max_anisotropy)));
+        let [a, c] = [conics[0].a, conics[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
+        let frame = Frame::new(self.surface, index, middle, a < c);
+        let frame = if picks.len() > 1 { frame.fit(pixels, conics, picked)? } else { frame };
+        kernels.clear();
+        for (vector, (pixels, conics)) in pixels.iter().zip(conics).enumerate() {
+            let lanes = frame.kernels(pixels, conics);
+            let here = picks.iter().filter(|pick| usize::from(**pick / 8) == first_vector + vector);
+            kernels.extend(here.map(|pick| lanes.lane(usize::from(pick % 8))));
+        }
+        let extent = Extent::of(kernels, frame.depth);
+        let depth = frame.greatest_depth(extent.xi);
+        let num_rows = extent.q[1] * (1.0 + frame.growth.max(0.0)) + depth - extent.q[0];
+        let step = extent.half_height * (2.0 / self.num_bins);
+        let is_wasteful = num_rows * (extent.xi[1] - extent.xi[0]) > extent.area;
+        if picks.len() > 1 && (is_wasteful || extent.q[1] - extent.q[0] > step * MOST_BINS) {
+            return None;
+        }
+        let scale = frame.greatest_scale([extent.q[0] - 1.0, extent.q[0] + num_rows + 1.0])?;
+        totals.clear();
+        totals.resize(picks.len(), Totals::default());
+        let layout = Layout { frame: &frame, extent: &extent, scale, step };
+        let num_rows = if lights.is_empty() {
+            layout.run(unlit, kernels, &[], totals)
+        } else {
+            layout.run(lit, kernels, lights, totals)
+        };
+        for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
+            *found = totals.mean(!lights.is_empty()).unwrap_or_else(|| {
+                let pixels = &self.pixels[usize::from(pick / 8)];
+                isotropic::bilinear(self.surface, index, pixels.footprint(usize::from(pick % 8)).center)
+            });
+        }
+        Some(num_rows)
+    }
+
+    /// The finest level on which the footprints are at most so many texels across as `settings.lines` asks for, and their
+    /// sweeps short enough; and the means of places and displacements. `None` where footprints differ too much.
+    fn choose_level(
+        &self,
+        pixels: &[PixelFootprints],
+        picked: &[PixelLanes],
+        num: usize,
+        is_lit: bool,
+    ) -> Option<(usize, [[f32; 2]; 2])> {
+        let surface = self.surface;
+        let base = surface.texels_per_repeat(0);
+        let means = means(pixels, picked, num);
+        let [du, dv] = [means[1][0] * base[0], means[1][1] * base[1]];
+        let (mut least, mut most, mut long) = (f32::MAX, 0.0_f32, 0.0_f32);
+        for (pixels, picked) in pixels.iter().zip(picked) {
+            let conics = pixels.conics(base, self.settings.max_anisotropy);
+            let greatest = |lanes: PixelLanes| (lanes & *picked).to_array().into_iter().fold(0.0, f32::max);
+            let far = PixelLanes::splat(f32::MAX) & !*picked;
+            least = least.min((conics.short & *picked).fast_max(far).to_array().into_iter().fold(f32::MAX, f32::min));
+            (most, long) = (most.max(greatest(conics.short)), long.max(greatest(conics.long)));
+        }
+        if most > MOST_RATIO * least {
+            return None;
+        }
+        // Under lights no table helps where a level loses what hides behind fine ridges: take one level finer instead.
+        let bias = if is_lit { 1 } else { self.far.map_or(0, |far| far.level_bias([du, dv])) };
+        let (across, walk) = (2.0 * most.sqrt(), du.abs().max(dv.abs()));
+        let widest = (self.settings.lines << bias) as f32 * WIDEST;
+        let fits = |level: &usize| {
+            let texels = surface.texels_per_repeat(*level);
+            let scale = (texels[0] / base[0]).max(texels[1] / base[1]);
+            across * scale <= widest && (2.0 * long.sqrt() + walk) * scale <= MAX_ROWS
+        };
+        let last = surface.levels.len() - 1;
+        Some(((0..last).find(fits).unwrap_or(last), means))
+    }
+}
+
+/// All bits of the lanes that are picked, from a vector on.
+fn masks(picks: &[u8], first_vector: usize) -> [PixelLanes; MOST_VECTORS] {
+    let mut bits = [[0_u32; 8]; MOST_VECTORS];
+    picks.iter().for_each(|pick| bits[usize::from(pick / 8) - first_vector][usize::from(pick % 8)] = u32::MAX);
+    bits.map(|lanes| PixelLanes::new(lanes.map(f32::from_bits)))
+}
+
+impl Extent {
+    fn of(kernels: &[Kernel], depth: f32) -> Self {
+        let mut extent = Self {
+            xi: [f32::MAX, f32::MIN],
+            q: [f32::MAX, f32::MIN],
+            half_width: 0.0,
+            half_height: f32::MAX,
+            area: 0.0,
+        };
+        for kernel in kernels {
+            let Kernel { xi, q, half_width, half_height, .. } = *kernel;
+            extent.xi = [extent.xi[0].min(xi - half_width), extent.xi[1].max(xi + half_width)];
+            extent.q = [extent.q[0].min(q - half_height), extent.q[1].max(q + half_height)];
+            extent.half_width = extent.half_width.max(half_width);
+            extent.half_height = extent.half_height.min(half_height);
+            extent.area += 2.0 * half_width * (2.0 * half_height + depth);
+        }
+        extent
+    }
+}
+
+/// How a patch is cut into grids of lines and rows.
+struct Layout<'a> {
+    frame: &'a Frame<'a>,
+    extent: &'a Extent,
+    scale: f32,
+    step: f32,
+}
+
+impl Layout<'_> {
+    /// Sweeps all lines and adds what they see to the pixels. Returns the number of rows.
+    fn run<const CHANNELS: usize>(
+        &self,
+        profile: &mut Profile<CHANNELS>,
+        kernels: &[Kernel],
+        lights: &[LocalLights],
+        totals: &mut [Totals],
+    ) -> u64 {
+        let Extent { xi, q, half_width, .. } = *self.extent;
+        let spacing = (WIDEST / self.scale).min(half_width * (2.0 / NUM_LINES));
+        let num_lines = 2 * ((xi[1] - xi[0]) * (0.5 / spacing)).ceil() as usize;
+        let first = (xi[0] + xi[1]) * 0.5 - spacing * (num_lines as f32 * 0.5 - 0.5);
+        let num_bins = ((q[1] - q[0]) / self.step).ceil().max(1.0) as usize;
+        let mut num_rows = 0;
+        for line in (0..num_lines).step_by(MOST_LINES) {
+            let grid = Grid {
+                frame: self.frame,
+                first: first + line as f32 * spacing,
+                spacing,
+                num_lines: (num_lines - line).min(MOST_LINES),
+                begin: q[0],
+                step: self.step,
+                num_bins,
+            };
+            for (group, range) in grid.ranges(kernels).into_iter().enumerate() {
+                if range[0] < range[1] {
+                    num_rows += profile.sweep(&grid, group, range);
+                }
+            }
+            for (i, (kernel, totals)) in kernels.iter().zip(totals.iter_mut()).enumerate() {
+                totals.add(profile, &grid, kernel, lights.get(i));
+            }
+        }
+        num_rows
+    }
+}
