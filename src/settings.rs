@@ -83,6 +83,9 @@ pub struct Settings {
     pub texel_budget: u32,
     /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
     pub max_anisotropy: f32,
+    /// Longest difference of formula (3) over that of (2) that `Visible` takes for a slope of the relief; a longer one is
+    /// a jump, where (2) stands. 1 to 1e6, or 0: never a jump, as in the paper. Default: 4.
+    pub max_stretch: f32,
     /// Rays a pixel of `Truth` and `Parallax`, 1 to 65536. Default: 64.
     pub samples: u32,
     /// Most texels across a footprint's shorter axis that `Horizon` sweeps, in as many lines, 2 to 64; picks the mip level: more is finer and slower. Default: 10.
@@ -113,6 +116,7 @@ impl Default for Settings {
             formulas: Formulas::Meant,
             texel_budget: 256,
             max_anisotropy: 64.0,
+            max_stretch: 4.0,
             samples: 64,
             lines: 10,
             far_field: true,
@@ -151,6 +155,9 @@ impl Settings {
         }
         if !(1.0..=1e6).contains(&self.max_anisotropy) {
             return Err(Error::setting("max_anisotropy", format!("{} is not within 1 to 1e6", self.max_anisotropy)));
+        }
+        if !(self.max_stretch == 0.0 || (1.0..=1e6).contains(&self.max_stretch)) {
+            return Err(Error::setting("max_stretch", format!("{} is not 0 or within 1 to 1e6", self.max_stretch)));
         }
         Ok(())
     }

@@ -183,9 +183,23 @@ proptest! {
 fn marches_along_the_edges_of_cells_find_the_first_hit() {
     let heights = HeightImage::from_fn(11, 4, |x, y| 0.5 + 0.01 * (x % 3 + y) as f32);
     let surface = surface(SurfaceMaps { height: Some(heights), ..Default::default() });
-    for (place, view) in [([-13.625, -13.625], [-13.625, 0.0]), ([-13.5 / 11.0, 0.3], [0.0, 3.7])] {
+    for (place, view) in
+        [([-13.625, -13.625], [-13.625, 0.0]), ([-13.5 / 11.0, 0.3], [0.0, 3.7]), ([-13.5 / 11.0, 0.3], [-1e-5, 3.7])]
+    {
         let pixel = Pixel::new(place, [0.1, 0.0], [0.0, 0.1], view);
         invariants::march_finds_first_hit(&surface, &pixel).expect("the first hit");
+    }
+}
+
+/// Found by fuzzing: under a high limit of anisotropy the half axes of a thin ellipse came from a difference that cancels.
+#[test]
+fn a_sweep_takes_a_bounded_number_of_rows() {
+    let surface = surface(maps(1, 1, Wrap::Repeat, 1));
+    let settings = Settings { max_anisotropy: 1e6, ..settings(Filter::Horizon) };
+    for view in [0.0, 0.002, 3.0, 64.0] {
+        let pixel = Pixel::new([0.9, 0.0], [0.0, 0.002], [-15.75, -15.75], [view; 2]);
+        let (_, num_rows) = horizon::visible_mean(&surface, &pixel.footprint, pixel.displacement, &settings, None);
+        assert!(num_rows < 8 * 200, "{num_rows} rows");
     }
 }
 

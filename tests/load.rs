@@ -160,6 +160,15 @@ fn albedo_is_the_colour_map_in_linear_light_and_kd_beside_it() {
     assert_eq!(material.surface.as_ref().expect("a surface").color_scale, 1.0);
 }
 
+/// By the letter it is a highlight of no end, which washes out all that the light reaches.
+#[test]
+fn an_exponent_of_zero_is_no_highlight() {
+    let material = &Files::quad("Ks 0.8 0.8 0.8\nNs 0").load().scene.materials[0];
+    assert_eq!(material.specular, Vec3::ZERO);
+    let material = &Files::quad("Ks 0.8 0.8 0.8").load().scene.materials[0];
+    assert_eq!(material.specular, Vec3::splat(0.8));
+}
+
 #[test]
 fn paths_are_relative_to_the_mtl_with_spaces_and_backslashes() {
     let files = Files::new(&QUAD.replace("s.mtl", "sub\\my mats.mtl"), "");
@@ -333,6 +342,19 @@ fn every_format_is_read() {
         let files = Files::quad(&format!("map_Kd {name}\ndisp {name}"));
         files.image(name, one(200, 200, 200));
         assert!((files.heights()[0] - 200 * 257).abs() < 600, "{name}: {:?}", files.heights());
+    }
+}
+
+#[test]
+fn an_exr_of_one_channel_is_a_height_map() {
+    use exr::prelude::{SpecificChannels, WritableImage};
+    for name in ["Y", "Z"] {
+        let files = Files::quad("disp h.exr");
+        let channels = SpecificChannels::build().with_channel(name);
+        let height = |place: exr::math::Vec2<usize>| ([0.25_f32, 0.75][place.x()],);
+        let image = exr::image::Image::from_channels((2, 1), channels.with_pixel_fn(height));
+        image.write().to_file(files.path("h.exr")).unwrap();
+        assert_near(&files.heights(), &[16384, 49151]);
     }
 }
 

@@ -56,6 +56,10 @@ struct FilterOptions {
     /// Longest ellipse, as the ratio of its axes, 1 to 1e6; longer ones are widened
     #[arg(long, value_name = "N", default_value_t = DEFAULT.max_anisotropy, value_parser = values::number, allow_hyphen_values = true)]
     max_anisotropy: f32,
+    /// For --filter visible: a derivative of formula (3) this many times as long as that of (2) is a jump of the relief,
+    /// and (2) is taken; 1 to 1000000, or 0 for never, as in the paper
+    #[arg(long, value_name = "N", default_value_t = DEFAULT.max_stretch, value_parser = values::number, allow_hyphen_values = true)]
+    max_stretch: f32,
     /// Rays a pixel of --filter truth and parallax, 1 to 65536
     #[arg(long, value_name = "N", default_value_t = DEFAULT.samples)]
     samples: u32,
@@ -85,6 +89,7 @@ impl SettingsOptions {
             formulas: filter.formulas,
             texel_budget: filter.texel_budget,
             max_anisotropy: filter.max_anisotropy,
+            max_stretch: filter.max_stretch,
             samples: filter.samples,
             lines: filter.lines,
             far_field: filter.far_field,
@@ -152,7 +157,7 @@ mod tests {
     #[test]
     fn each_option_sets_its_field() {
         let line = "--size 64x36 --msaa 4 --cull --tile 16 --lighting lit --filter horizon --visible two-ended \
-                    --parallax off --derivatives flat --formulas printed --texel-budget 0 --max-anisotropy 8 \
+                    --parallax off --derivatives flat --formulas printed --texel-budget 0 --max-anisotropy 8 --max-stretch 3 \
                     --samples 5 --lines 6 --far-field off --far-field-mib 7";
         let expected = Settings {
             width: 64,
@@ -164,6 +169,7 @@ mod tests {
             formulas: Formulas::Printed,
             texel_budget: 0,
             max_anisotropy: 8.0,
+            max_stretch: 3.0,
             samples: 5,
             lines: 6,
             far_field: false,
@@ -185,6 +191,8 @@ mod tests {
             ("--far-field-mib 0", "--far-field-mib"),
             ("--max-anisotropy nan", "--max-anisotropy"),
             ("--max-anisotropy 0.5", "--max-anisotropy"),
+            ("--max-stretch 0.5", "--max-stretch"),
+            ("--max-stretch nan", "--max-stretch"),
             ("--msaa 3", "--msaa"),
             ("--size 1x0", "--size"),
         ] {

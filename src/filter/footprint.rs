@@ -13,9 +13,13 @@
 //! ```
 //!
 //! The x-difference is taken in the pixel's row of the quad and the y-difference in its column.
+//!
+//! Where the neighbour's ray passes an outline of the relief and hits another part of it, formula (3) is the way from one
+//! part to the other, and says nothing of the surface at the hit. The paper does not speak of this. [`differences_for`] the
+//! filter `Visible` therefore takes formula (2) for a difference that (3) makes many times longer.
 
 use crate::relief::finite;
-use crate::settings::{Derivatives, Formulas};
+use crate::settings::{Derivatives, Filter, Formulas, Settings};
 use crate::simd::PixelLanes;
 
 /// Longest derivative that is kept, in texture repeats a pixel: a footprint of that length holds the mean of all texels
@@ -57,6 +61,26 @@ pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Deriv
     }
     let [dudx, dvdx, dudy, dvdy] = result.map(|lanes| finite(PixelLanes::new(lanes)));
     Differences { dx: [dudx, dvdx], dy: [dudy, dvdy] }
+}
+
+/// The differences that the footprints of a filter are made of: formula (2) or (3) by the settings. For `Visible` and
+/// formula (3) as meant, a jump of the relief between two pixels (a difference more than `max_stretch` times as long as
+/// that of (2), in texture repeats) is not taken for the slope of a surface: there stands the difference of (2).
+#[must_use]
+pub fn differences_for(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], settings: &Settings) -> Differences {
+    let which = (settings.derivatives, settings.formulas);
+    let displaced = differences(uv, offset, which);
+    let is_bounded = settings.filter == Filter::Visible && settings.max_stretch > 0.0;
+    if !is_bounded || which != (Derivatives::Relief, Formulas::Meant) {
+        return displaced;
+    }
+    let flat = differences(uv, offset, (Derivatives::Flat, Formulas::Meant));
+    let without_jump = |displaced: [PixelLanes; 2], flat: [PixelLanes; 2]| {
+        let squared = |[u, v]: [PixelLanes; 2]| u * u + v * v;
+        let is_jump = squared(displaced).simd_gt(squared(flat) * (settings.max_stretch * settings.max_stretch));
+        [0, 1].map(|axis| is_jump.select(flat[axis], displaced[axis]))
+    };
+    Differences { dx: without_jump(displaced.dx, flat.dx), dy: without_jump(displaced.dy, flat.dy) }
 }
 
 /// Coordinates and relief offset of one pixel.

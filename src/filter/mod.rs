@@ -16,7 +16,7 @@ pub mod visible;
 
 pub use ellipse::{Ellipse, RECONSTRUCTION};
 pub use far_field::FarField;
-pub use footprint::{Corner, Differences, Footprint, at_pixel, differences};
+pub use footprint::{Corner, Differences, Footprint, at_pixel, differences, differences_for};
 pub use horizon::PixelFootprints;
 pub use texel_set::{TexelRow, TexelSet};
 

@@ -4,6 +4,11 @@
 //! height and is followed against the displacement `D` (in texels), in steps of one texel along the longer axis of `D`,
 //! until it is above all relief; between two texels across the ray the height is interpolated. At one pixel the slope is
 //! the same for all texels, so a step of eight neighbouring rays reads eight neighbouring heights.
+//!
+//! Beyond the paper's letter, the ellipse has Heckbert's kernel and weight, and where the relief jumps between two pixels of
+//! a quad, formula (3), which spans the jump and so takes in texels of two unrelated parts and all around them, gives way
+//! to formula (2) (see [`differences_for`](super::differences_for); `max_stretch` 0 keeps the letter). As in the paper, a
+//! texel counts whole or not at all, so one seen from its side counts like one that faces the eye.
 
 use super::TexelSet;
 use super::texel_set::TexelRow;
@@ -129,45 +134,45 @@ fn remove_exact(set: &mut TexelSet, occlusion: &Occlusion) -> u64 {
 /// Keeps a row's texels from both ends, each until its first hidden one.
 fn keep_ends(row: &TexelRow, batches: &mut [u8], occlusion: &Occlusion) -> u64 {
     let mut num_tested = 0;
-    let mut test = |i: usize, bits: u8| {
+    let mut hidden_of = |i: usize, bits: u8| {
         num_tested += u64::from(bits.count_ones());
         bits & !occlusion.visible(row.x + 8 * i as i32, row.y, bits)
     };
-    let first_hidden = batches.iter().enumerate().find_map(|(i, &bits)| {
-        let hidden = test(i, bits);
-        (hidden != 0).then(|| (i, hidden.trailing_zeros()))
-    });
-    let Some((low, low_bit)) = first_hidden else { return num_tested };
-    // At least the batch of the first hidden texel ends this scan.
-    let last_hidden = (low..batches.len()).rev().find_map(|i| {
-        let hidden = test(i, batches[i]);
-        (hidden != 0).then(|| (i, hidden.leading_zeros()))
-    });
-    let (high, high_zeros) = last_hidden.unwrap_or((low, 7 - low_bit));
+    let mut first = batches.iter().enumerate().map(|(i, &bits)| (i, hidden_of(i, bits)));
+    let Some((low, low_hidden)) = first.find(|(_, hidden)| *hidden != 0) else { return num_tested };
+    // The batch of the first hidden texel ends this scan; what it hides is known.
+    let mut last = (low + 1..batches.len()).rev().map(|i| (i, hidden_of(i, batches[i])));
+    let (high, high_hidden) = last.find(|(_, hidden)| *hidden != 0).unwrap_or((low, low_hidden));
+    let before = (1_u32 << low_hidden.trailing_zeros()) - 1;
+    let after = !(0xff_u32 >> high_hidden.leading_zeros());
     for (i, bits) in batches.iter_mut().enumerate().take(high + 1).skip(low) {
-        let before = if i == low { (1_u32 << low_bit) - 1 } else { 0 };
-        let after = if i == high { !(0xff_u32 >> high_zeros) & 0xff } else { 0 };
-        *bits &= (before | after) as u8;
+        let kept = if i == low { before } else { 0 } | if i == high { after } else { 0 };
+        *bits &= kept as u8;
     }
     num_tested
 }
 
-/// Traces every texel and counts, in its place, the visible texel that covers it, if it lies in T; the set's bits are the
-/// buffer of counted texels, which keeps each from counting twice (the paper's Fig. 6).
+/// Traces every texel; a hidden one leads to the texel that covers it, which leads on until a visible one, and that counts,
+/// if it lies in T. A buffer of texels traced before ends a chain early and keeps each from counting twice (the paper's
+/// Fig. 6).
 fn resolve(set: &mut TexelSet, occlusion: &Occlusion) -> u64 {
     let inside = set.clone();
+    let mut is_traced = vec![0; set.bits.len()];
     set.bits.fill(0);
     let mut num_tested = 0;
     for [x, y] in inside.iter() {
         let mut texel = [x, y];
-        num_tested += 1;
-        // Each coverer is nearer to the eye, so the chain ends at a visible texel.
-        while let Some(coverer) = occlusion.coverer(texel[0], texel[1]) {
-            texel = coverer;
-        }
-        if inside.contains(texel[0], texel[1]) {
-            let (byte, bit) = set.place(texel[0], texel[1]).expect("a batch spans every texel of T");
-            set.bits[byte] |= bit;
+        let open = |[x, y]: [i32; 2], is_traced: &[u8]| {
+            let place = inside.place(x, y);
+            place.filter(|&(byte, bit)| inside.bits[byte] & !is_traced[byte] & bit != 0)
+        };
+        while let Some((byte, bit)) = open(texel, &is_traced) {
+            is_traced[byte] |= bit;
+            num_tested += 1;
+            match occlusion.coverer(texel[0], texel[1]) {
+                Some(coverer) => texel = coverer,
+                None => set.bits[byte] |= bit,
+            }
         }
     }
     num_tested

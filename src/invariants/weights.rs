@@ -6,8 +6,9 @@ use crate::reference::{Conic, Lines, RAY_TIE, ray_margin, texels};
 use crate::settings::{Filter, Settings};
 use crate::texture::{ColorImage, Surface, SurfaceMaps};
 
-/// How far the weights of all texels may be from adding up to 1: a mip level rounds each texel.
-const SUM_ROUNDING: f64 = 1e-3;
+/// How far the weights of all texels may be from adding up to 1: in f32, and by what a mip level rounds each texel.
+const SUM_ROUNDING: f64 = 2e-4;
+const TEXEL_ROUNDING: f64 = 1.0 / 32767.0;
 
 /// The horizon weighs every texel of the texture 0 or more, and all weights add up to 1 whatever the relief. Takes a render
 /// of the pixel for every three texels, so the texture should be small.
@@ -28,7 +29,8 @@ pub fn horizon_weights(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings) -
         ensure(color.iter().all(|c| *c >= 0.0), || format!("texels {first} to {} weigh {color:?}", first + 2))?;
         sum += color.iter().map(|c| f64::from(*c)).sum::<f64>();
     }
-    ensure((sum - 1.0).abs() < SUM_ROUNDING, || format!("the weights add up to {sum}"))
+    let rounding = SUM_ROUNDING + f64::from(w * h) * TEXEL_ROUNDING;
+    ensure((sum - 1.0).abs() < rounding, || format!("the weights add up to {sum}"))
 }
 
 /// A texel makes a new record on the line through its centre exactly if the ray from it to the eye is free, up to ties:

@@ -16,8 +16,12 @@ const MAX_STEPS: usize = 1 << 14;
 /// Most patterns from the first that a ray over a clamped map starts at: all beyond looks like its edge.
 const FARTHEST: f32 = 128.0;
 
-/// Part of a texel that a ray is moved past a node's edge, so that rounding cannot keep it inside.
+/// Part of a texel, along the axis that it moves along fastest, that a ray is moved past a node's edge, so that rounding
+/// cannot keep it inside.
 const NUDGE: f32 = 1.0 / 1024.0;
+
+/// What an f32 just under 1 can be moved by.
+const LEAST_NUDGE: f32 = 1.0 / 8_388_608.0;
 
 /// The depth `t`, 0 to 1, of the first hit of the rays from `base` along `displacement`, both in repeats.
 #[must_use]
@@ -34,12 +38,14 @@ pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelL
         |d: PixelLanes| finite(d).fast_max(PixelLanes::splat(-MAX_SLOPE)).fast_min(PixelLanes::splat(MAX_SLOPE));
     let step = [bounded(displacement[0]) * nu, bounded(displacement[1]) * nv];
     // Each ray's own, so that its hit does not depend on the rays beside it.
-    let level = step[0].abs().fast_max(step[1].abs()).to_array().map(|length| field.first_level(length));
+    let longest = step[0].abs().fast_max(step[1].abs());
+    let level = longest.to_array().map(|length| field.first_level(length));
     let mut rays = Rays {
         start: [start(base[0], nu, field.size[0]), start(base[1], nv, field.size[1])],
         step,
         inverse: step.map(|s| moves(s).select(PixelLanes::ONE / s, PixelLanes::ZERO)),
         late: step.map(|s| moves(s).select(PixelLanes::ZERO, PixelLanes::splat(2.0))),
+        nudge: (PixelLanes::splat(NUDGE) / longest.fast_max(PixelLanes::ONE)).fast_max(PixelLanes::splat(LEAST_NUDGE)),
         depth: PixelLanes::ZERO,
         level: i32x8::new(level),
         parent: [i32x8::splat(i32::MIN); 2],
@@ -66,6 +72,8 @@ struct Rays {
     /// One over the step; 0 along an axis that a ray does not move along, which it leaves late: at a depth of 2.
     inverse: [PixelLanes; 2],
     late: [PixelLanes; 2],
+    /// The depth that a ray is moved past a node's edge.
+    nudge: PixelLanes,
     depth: PixelLanes,
     level: i32x8,
     /// The parents of the nodes just passed; no node where the ray did not move on.
@@ -85,13 +93,18 @@ impl Rays {
     /// Moves every ray by one node or one level.
     fn advance(&mut self, field: &HeightField) {
         let place = [self.start[0] + self.step[0] * self.depth, self.start[1] + self.step[1] * self.depth];
-        let cell = place.map(PixelLanes::floor);
+        // A ray on the edge of a cell is in the one that it moves into.
+        let cell = [0, 1].map(|axis| {
+            let backwards = self.step[axis].simd_lt(PixelLanes::ZERO);
+            backwards.select(place[axis].ceil() - 1.0, place[axis].floor())
+        });
         let folded = [0, 1].map(|axis| fold(field, axis, cell[axis]));
         self.climb(field, &folded);
         let nodes = self.nodes(field, cell, folded);
         let is_cell = self.level.simd_eq(i32x8::splat(0));
         let heights = self.node_heights(field, &nodes.folded);
-        let [exit, leave] = [0.0, NUDGE].map(|nudge| self.depth_at_exit(&place, &nodes, nudge));
+        let exit = self.depth_at_exit(&place, &nodes);
+        let leave = (exit + self.nudge).fast_min(PixelLanes::ONE);
         // The ray descends, so it is lowest where it leaves the node.
         let is_above = mask(leave.simd_lt(PixelLanes::ONE - heights));
         let is_open = is_cell & !self.is_done;
@@ -146,11 +159,11 @@ impl Rays {
         PixelLanes::new(std::array::from_fn(height)) * (1.0 / FULL_F32)
     }
 
-    /// Depth at which the rays are a nudge beyond their nodes.
-    fn depth_at_exit(&self, place: &[PixelLanes; 2], nodes: &Nodes, nudge: f32) -> PixelLanes {
+    /// Depth at which the rays are at the edge of their nodes.
+    fn depth_at_exit(&self, place: &[PixelLanes; 2], nodes: &Nodes) -> PixelLanes {
         let way = |axis: usize| {
             let forwards = self.step[axis].simd_gt(PixelLanes::ZERO);
-            let edge = forwards.select(nodes.high[axis] + nudge, nodes.low[axis] - nudge);
+            let edge = forwards.select(nodes.high[axis], nodes.low[axis]);
             ((edge - place[axis]) * self.inverse[axis]).abs() + self.late[axis]
         };
         (self.depth + way(0).fast_min(way(1))).fast_min(PixelLanes::ONE)

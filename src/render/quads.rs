@@ -75,8 +75,7 @@ impl<'a> QuadShader<'a> {
         let depth = field.map_or(PixelLanes::ZERO, |field| march(field, &pair.uv, reach));
         let offset = [reach[0] * depth, reach[1] * depth];
         let place = [pair.uv[0] + offset[0], pair.uv[1] + offset[1]];
-        let which = (self.settings.derivatives, self.settings.formulas);
-        let differences = filter::differences(&pair.uv, &offset, which);
+        let differences = filter::differences_for(&pair.uv, &offset, self.settings);
         let mut set = TexelSet::default();
         let mut num_texels = [0; 2];
         let colors = each_covered(pair, |lane| {

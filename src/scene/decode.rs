@@ -5,9 +5,10 @@
 
 use super::contain::contain;
 use super::files;
+use super::gray_exr::GrayExr;
 use super::samples::Samples;
 use crate::error::{Error, Result};
-use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
@@ -77,14 +78,13 @@ fn decoder<'a, R: BufRead + Seek + 'a>(
     let mut reader = ImageReader::new(reader).with_guessed_format().map_err(|e| e.to_string())?;
     if reader.format().is_none() {
         // TGA has no signature: its name is all there is.
-        let format = image::ImageFormat::from_path(path).map_err(|_| "not an image of a known format")?;
+        let format = ImageFormat::from_path(path).map_err(|_| "not an image of a known format")?;
         reader.set_format(format);
     }
     let mut within = Limits::default();
     (within.max_image_width, within.max_image_height) = (Some(limits.side), Some(limits.side));
     within.max_alloc = Some(limits.bytes);
-    reader.limits(within.clone());
-    let mut decoder = reader.into_decoder().map_err(|e| e.to_string())?;
+    let mut decoder = boxed_decoder(reader, within.clone())?;
     let (width, height) = decoder.dimensions();
     if width == 0 || height == 0 {
         return Err("the image has no texels".into());
@@ -97,7 +97,21 @@ fn decoder<'a, R: BufRead + Seek + 'a>(
         return Err(format!("{width} x {height} texels need more than {mib} MiB (max_image_mib)"));
     }
     decoder.set_limits(within).map_err(|e| e.to_string())?;
-    Ok(Box::new(decoder))
+    Ok(decoder)
+}
+
+fn boxed_decoder<'a, R: BufRead + Seek + 'a>(
+    mut reader: ImageReader<R>,
+    limits: Limits,
+) -> std::result::Result<Box<dyn ImageDecoder + 'a>, String> {
+    if reader.format() == Some(ImageFormat::OpenExr) {
+        match GrayExr::new(reader.into_inner()).map_err(|e| e.to_string())? {
+            Ok(gray) => return Ok(Box::new(gray)),
+            Err(file) => reader = ImageReader::with_format(file, ImageFormat::OpenExr),
+        }
+    }
+    reader.limits(limits);
+    Ok(Box::new(reader.into_decoder().map_err(|e| e.to_string())?))
 }
 
 fn info(decoder: &dyn ImageDecoder) -> std::result::Result<ImageInfo, String> {

@@ -180,10 +180,12 @@ fn plain_material(from: &MtlMaterial) -> Material {
     // Beyond these bounds a colour or exponent is a mistake in the file that need not stop the picture.
     let color = |c: [f32; 3]| Vec3::from_array(c).clamp(Vec3::ZERO, Vec3::splat(1e6));
     let fallback = Material::default();
+    // Exporters write `Ns 0` for a surface without a highlight; taken by the letter it is one of no end.
+    let specular = from.specular.filter(|_| from.shininess != Some(0.0));
     Material {
         name: from.name.clone(),
         diffuse: from.diffuse.map_or(fallback.diffuse, color),
-        specular: from.specular.map_or(fallback.specular, color),
+        specular: specular.map_or(fallback.specular, color),
         shininess: from.shininess.map_or(fallback.shininess, |exponent| exponent.clamp(0.0, 1e4)),
         surface: None,
     }

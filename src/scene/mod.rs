@@ -5,6 +5,7 @@ mod camera;
 mod contain;
 mod decode;
 mod files;
+mod gray_exr;
 mod light;
 mod lines;
 mod load;

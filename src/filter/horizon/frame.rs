@@ -141,9 +141,10 @@ impl<'a> Frame<'a> {
         let [mut qq, mut qx, mut xx, mut q_along, mut x_along, mut x_across] = [PixelLanes::ZERO; 6];
         for (pixels, &picked) in pixels.iter().zip(picked) {
             let [[x, q], [along, across]] = self.growths(pixels);
-            (qq, qx, xx) = (qq + (q * q & picked), qx + (q * x & picked), xx + (x * x & picked));
-            (q_along, x_along) = (q_along + (q * along & picked), x_along + (x * along & picked));
-            x_across += x * across & picked;
+            let product = |a: PixelLanes, b: PixelLanes| (a * b) & picked;
+            (qq, qx, xx) = (qq + product(q, q), qx + product(q, x), xx + product(x, x));
+            (q_along, x_along) = (q_along + product(q, along), x_along + product(x, along));
+            x_across += product(x, across);
         }
         let [qq, qx, xx, q_along, x_along, x_across] = [qq, qx, xx, q_along, x_along, x_across].map(sum);
         let determinant = qq * xx - qx * qx;
@@ -161,7 +162,8 @@ impl<'a> Frame<'a> {
             let ry = along - q * self.growth - x * self.tilt;
             let rx = across - x * (self.spread * self.depth) + ry * self.shear;
             let ([a, c], b) = (self.turn([conic.a, conic.c]), conic.b * self.toward);
-            misfit = misfit.fast_max((a * rx * rx + b * rx * ry + c * ry * ry) / conic.f & picked);
+            let r2 = (a * rx * rx + b * rx * ry + c * ry * ry) / conic.f;
+            misfit = misfit.fast_max(r2 & picked);
         }
         let is_fit = misfit.simd_le(PixelLanes::splat(MOST_MISFIT)).all();
         (is_fit && self.growth.abs() <= MOST_GROWTH).then_some(self)
