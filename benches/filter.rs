@@ -1,6 +1,8 @@
 //! Filters: one pixel by each, near (about a texel), grazing (a long thin ellipse) and far (many texels), and the tables.
 
-use basrelief::filter::{self, FarField, Footprint, TexelSet, horizon, isotropic, parallax};
+use basrelief::filter::horizon::{self, MOST_PIXELS, Patches, Scratch};
+use basrelief::filter::{self, FarField, Filtered, Footprint, PixelFootprints, TexelSet, isotropic, parallax};
+use basrelief::simd::f32x8;
 use basrelief::texture::Surface;
 use basrelief::{Settings, Visibility, scene};
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -26,6 +28,16 @@ fn pixel(view: &View, center: [f32; 2]) -> (Footprint, [f32; 2]) {
     let (cos, sin) = (0.8 / 1024.0, 0.6 / 1024.0);
     let turned = |x: f32, y: f32| [x * cos - y * sin, x * sin + y * cos];
     (Footprint { center, dx: turned(view.across, 0.0), dy: turned(0.0, -view.along) }, turned(0.0, view.walk))
+}
+
+/// The eight by eight pixels from one on, all with its derivatives and displacement.
+fn block(first: &Footprint, displacement: [f32; 2]) -> [PixelFootprints; 8] {
+    let Footprint { center, dx, dy } = *first;
+    std::array::from_fn(|y| {
+        let row = PixelFootprints::splat(first, displacement);
+        let place = |i: usize| f32x8::new(std::array::from_fn(|x| center[i] + dx[i] * x as f32 + dy[i] * y as f32));
+        PixelFootprints { center: [place(0), place(1)], ..row }
+    })
 }
 
 /// Runs `mean` on the view's pixel, each time elsewhere in the texture.
@@ -68,8 +80,17 @@ fn means(criterion: &mut Criterion) {
         group.bench_function(name("horizon"), |b| {
             everywhere(b, view, |f, d| horizon::visible_mean(street, f, d, &settings, None));
         });
-        group.bench_function(name("horizon_with_tables"), |b| {
-            everywhere(b, view, |f, d| horizon::near_or_far_mean(street, &far, f, d, &settings));
+        let patches = |pixels| Patches {
+            surface: street,
+            far: Some(&far),
+            pixels,
+            settings: &settings,
+            num_bins: horizon::picture_bins(&settings, false),
+        };
+        let (mut scratch, mut found) = (Scratch::default(), [Filtered::default(); MOST_PIXELS]);
+        let picks: [u8; MOST_PIXELS] = std::array::from_fn(|i| i as u8);
+        group.bench_function(name("horizon_64_pixels"), |b| {
+            everywhere(b, view, |f, d| patches(&block(f, d)).means(&picks, &[], &mut scratch, &mut found));
         });
         group.bench_function(name("far_field"), |b| everywhere(b, view, |f, d| far.mean(street, f, d, &settings)));
     }

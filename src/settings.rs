@@ -88,7 +88,8 @@ pub struct Settings {
     pub max_stretch: f32,
     /// Rays a pixel of `Truth` and `Parallax`, 1 to 65536. Default: 64.
     pub samples: u32,
-    /// Most texels across a footprint's shorter axis that `Horizon` sweeps, in as many lines, 2 to 64; picks the mip level: more is finer and slower. Default: 10.
+    /// Most texels across a footprint's shorter axis that `Horizon` sweeps, 2 to 64; picks the mip level, and how many lines
+    /// (two for three texels) and bins cut the footprint: more is finer and slower. Default: 10.
     pub lines: u32,
     /// Whether `Horizon` uses tables of the seen colour for distant footprints. Default: `true`.
     pub far_field: bool,

@@ -308,8 +308,7 @@ fn reference_lines<'a>(surface: &'a Surface, pixel: &Pixel) -> Lines<'a> {
     let (center, displacement) = (scaled(pixel.footprint.center), scaled(pixel.displacement));
     let lines = Lines { level: &surface.levels[0], conic: Conic::from(&ellipse), center, displacement, spacing: 1.0 };
     let width = 2.0 * lines.half_width();
-    // Narrow footprints take six lines; wide ones lines 0.857 texels apart.
-    Lines { spacing: (width / 6.0).min(0.857), ..lines }
+    Lines { spacing: width / (0.65 * f64::from(base_level(Filter::Horizon).lines)), ..lines }
 }
 
 /// A floor's footprint: `aspect` times as long along the view as across.

@@ -1,7 +1,7 @@
 //! Blocks of pixels by the horizon filter: what is near is swept together, what is far comes from tables.
 
 use super::quads::{Ground, QuadShader, albedo, in_lanes, pixel_center};
-use crate::filter::horizon::{LIT_BINS, MOST_PIXELS, PICTURE_BINS, Patches, Scratch};
+use crate::filter::horizon::{self, MOST_PIXELS, Patches, Scratch};
 use crate::filter::{self, FarField, Filtered, PixelFootprints};
 use crate::raster::{QuadBlock, QuadPair};
 use crate::settings::{Derivatives, Formulas};
@@ -50,7 +50,7 @@ impl QuadShader<'_> {
         let Ground { surface, material, .. } = *ground;
         let batch = Batch::new(self, ground, far, pairs);
         let Batch { footprints, shares, near, lights, mut found } = batch;
-        let num_bins = if lights.is_empty() { PICTURE_BINS } else { LIT_BINS };
+        let num_bins = horizon::picture_bins(self.settings, !lights.is_empty());
         let patches = Patches { surface, far, pixels: &footprints, settings: self.settings, num_bins };
         let num_rows = patches.means(&near, &lights, scratch, &mut found);
         self.count([num_rows, 0]);

@@ -45,8 +45,9 @@ pub const MOST_PIXELS: usize = 64;
 /// Vectors of pixels that hold them.
 const MOST_VECTORS: usize = MOST_PIXELS / 8;
 
-/// Lines across the widest ellipse of a patch, unless that puts them farther apart than [`WIDEST`].
-const NUM_LINES: f32 = 7.0;
+/// Lines across the widest ellipse of a patch for each that the settings ask for, unless that puts them farther apart than
+/// [`WIDEST`]; and the fewest. Fewer than texels serve, since a line's colours are interpolated.
+const LINES: [f32; 2] = [0.65, 5.0];
 
 /// Greatest distance between lines in texels: eight lines and their neighbours lie within sixteen texels.
 const WIDEST: f32 = 1.99;
@@ -57,11 +58,14 @@ const MOST_BINS: f32 = 256.0;
 /// How much longer the widest ellipse of a patch may be across than the narrowest, squared.
 const MOST_RATIO: f32 = 2.25;
 
-/// Bins along the shortest ellipse of a patch: of a picture, of a picture with lights, and where one pixel is asked for.
-pub const PICTURE_BINS: f32 = 6.0;
-/// As [`PICTURE_BINS`], under lights, which are asked for each bin.
-pub const LIT_BINS: f32 = 16.0;
+/// Bins along the ellipse where a single pixel is asked for.
 const PIXEL_BINS: f32 = 256.0;
+
+/// Bins along the shortest ellipse of a patch that serve a picture. Lights are asked for each bin, so they need more.
+#[must_use]
+pub fn picture_bins(settings: &Settings, is_lit: bool) -> f32 {
+    (settings.lines as f32 * if is_lit { 1.6 } else { 0.6 }).max(5.0)
+}
 
 /// Buffers of sweeps, kept between them.
 #[derive(Clone, Debug, Default)]
@@ -101,7 +105,7 @@ pub struct Patches<'a> {
     pub pixels: &'a [PixelFootprints],
     /// Lines and anisotropy.
     pub settings: &'a Settings,
-    /// Bins along the shortest ellipse: how finely the kernel is cut. See [`PICTURE_BINS`].
+    /// Bins along the shortest ellipse: how finely the kernel is cut; see [`picture_bins`].
     pub num_bins: f32,
 }
 
@@ -172,7 +176,9 @@ impl Patches<'_> {
         let scale = frame.greatest_scale([extent.q[0] - 1.0, extent.q[0] + num_rows + 1.0])?;
         totals.clear();
         totals.resize(picks.len(), Totals::default());
-        let layout = Layout { frame: &frame, extent: &extent, scale, step };
+        let num_lines = (LINES[0] * self.settings.lines as f32).max(LINES[1]);
+        let spacing = (WIDEST / scale).min(extent.half_width * (2.0 / num_lines));
+        let layout = Layout { frame: &frame, extent: &extent, spacing, step };
         let num_rows = if lights.is_empty() {
             layout.run(unlit, kernels, &[], totals)
         } else {
@@ -214,7 +220,7 @@ impl Patches<'_> {
         // Under lights no table helps where a level loses what hides behind fine ridges: take one level finer instead.
         let bias = if is_lit { 1 } else { self.far.map_or(0, |far| far.level_bias([du, dv])) };
         let (across, walk) = (2.0 * most.sqrt(), du.abs().max(dv.abs()));
-        let widest = (self.settings.lines << bias) as f32 * 0.857;
+        let widest = (self.settings.lines << bias) as f32;
         let fits = |level: &usize| {
             let texels = surface.texels_per_repeat(*level);
             let scale = (texels[0] / base[0]).max(texels[1] / base[1]);
@@ -263,7 +269,7 @@ impl Extent {
 struct Layout<'a> {
     frame: &'a Frame<'a>,
     extent: &'a Extent,
-    scale: f32,
+    spacing: f32,
     step: f32,
 }
 
@@ -276,8 +282,8 @@ impl Layout<'_> {
         lights: &[LocalLights],
         totals: &mut [Totals],
     ) -> u64 {
-        let Extent { xi, q, half_width, .. } = *self.extent;
-        let spacing = (WIDEST / self.scale).min(half_width * (2.0 / NUM_LINES));
+        let Extent { xi, q, .. } = *self.extent;
+        let spacing = self.spacing;
         let num_lines = 2 * ((xi[1] - xi[0]) * (0.5 / spacing)).ceil() as usize;
         let first = (xi[0] + xi[1]) * 0.5 - spacing * (num_lines as f32 * 0.5 - 0.5);
         let num_bins = ((q[1] - q[0]) / self.step).ceil().max(1.0) as usize;
