@@ -80,17 +80,14 @@ fn means(criterion: &mut Criterion) {
         group.bench_function(name("horizon"), |b| {
             everywhere(b, view, |f, d| horizon::visible_mean(street, f, d, &settings, None));
         });
-        let patches = |pixels| Patches {
-            surface: street,
-            far: Some(&far),
-            pixels,
-            settings: &settings,
-            num_bins: horizon::picture_bins(&settings, false),
-        };
         let (mut scratch, mut found) = (Scratch::default(), [Filtered::default(); MOST_PIXELS]);
         let picks: [u8; MOST_PIXELS] = std::array::from_fn(|i| i as u8);
         group.bench_function(name("horizon_64_pixels"), |b| {
-            everywhere(b, view, |f, d| patches(&block(f, d)).means(&picks, &[], &mut scratch, &mut found));
+            everywhere(b, view, |f, d| {
+                let (pixels, num_bins) = (&block(f, d), horizon::picture_bins(&settings, false));
+                let patches = Patches { surface: street, far: Some(&far), pixels, settings: &settings, num_bins };
+                patches.means(&picks, &[], &mut scratch, &mut found)
+            });
         });
         group.bench_function(name("far_field"), |b| everywhere(b, view, |f, d| far.mean(street, f, d, &settings)));
     }
