@@ -64,7 +64,7 @@ pub enum Lighting {
 /// How a frame is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Width of the frame in pixels, 1 to 32768. Default: 1280.
+    /// Width of the frame in pixels, 1 to 32768; width times height is at most 2^28. Default: 1280.
     pub width: u32,
     /// Height of the frame in pixels, 1 to 32768. Default: 720.
     pub height: u32,
@@ -103,6 +103,9 @@ pub struct Settings {
     /// Side of a tile in pixels: 8, 16, 32, 64, 128 or 256. The picture does not depend on it. Default: 32.
     pub tile_size: u32,
 }
+
+/// Most pixels of a frame: 4 GiB of linear pixels.
+const MAX_PIXELS: u64 = 1 << 28;
 
 impl Default for Settings {
     fn default() -> Self {
@@ -144,6 +147,12 @@ impl Settings {
         };
         within("width", self.width, 1, 32768)?;
         within("height", self.height, 1, 32768)?;
+        if u64::from(self.width) * u64::from(self.height) > MAX_PIXELS {
+            return Err(Error::setting(
+                "width",
+                format!("{} x {} is more than {MAX_PIXELS} pixels", self.width, self.height),
+            ));
+        }
         within("samples", self.samples, 1, 65536)?;
         within("lines", self.lines, 2, 64)?;
         within("far_field_mib", self.far_field_mib, 1, 4096)?;

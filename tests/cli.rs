@@ -109,7 +109,7 @@ fn bad_images_are_refused() {
     folder.refuses("compare whole.png cut.png", &["cut.png"]);
     folder.refuses("compare text.png whole.png", &["text.png"]);
     folder.refuses("compare whole.png missing.png", &["missing.png"]);
-    folder.refuses("compare . whole.png", &[".", "not a file"]);
+    folder.refuses("compare . whole.png", &[".", "not a regular file"]);
 }
 
 #[test]
