@@ -14,7 +14,7 @@ mod stats;
 mod values;
 mod version;
 
-use args::{Cli, Command};
+pub(crate) use args::{Cli, Command};
 use clap::Parser;
 use std::ffi::OsString;
 use std::process::ExitCode;
