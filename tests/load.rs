@@ -1,7 +1,7 @@
 //! Loading: what is read, how it is read, and what is refused with which words.
 
 use basrelief::Error;
-use basrelief::scene::{HeightSense, LoadOptions, Loaded, NormalY, load};
+use basrelief::scene::{HeightSense, LoadOptions, Loaded, NormalY, load, load_obj_bytes};
 use basrelief::texture::{Surface, Wrap};
 use glam::{Vec2, Vec3};
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Rgb, Rgb32FImage, RgbImage, Rgba, RgbaImage};
