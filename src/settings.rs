@@ -81,8 +81,7 @@ pub struct Settings {
     /// The mip level is chosen so that an ellipse holds at most this many texels; 0: always the base level, as in the
     /// paper. Used by `Ewa` and `Visible`. Default: 256.
     pub texel_budget: u32,
-    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1024: beyond,
-    /// f32 cannot tell its shorter axis from none. Default: 64.
+    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
     pub max_anisotropy: f32,
     /// Longest difference of formula (3) over that of (2) that `Visible` takes for a slope of the relief; a longer one is
     /// a jump, where (2) stands. 1 to 1e6, or 0: never a jump, as in the paper. Default: 4.
@@ -164,8 +163,8 @@ impl Settings {
         if !(self.tile_size.is_power_of_two() && (8..=256).contains(&self.tile_size)) {
             return Err(Error::setting("tile_size", format!("{} is not 8, 16, 32, 64, 128 or 256", self.tile_size)));
         }
-        if !(1.0..=1024.0).contains(&self.max_anisotropy) {
-            return Err(Error::setting("max_anisotropy", format!("{} is not within 1 to 1024", self.max_anisotropy)));
+        if !(1.0..=1e6).contains(&self.max_anisotropy) {
+            return Err(Error::setting("max_anisotropy", format!("{} is not within 1 to 1e6", self.max_anisotropy)));
         }
         if !(self.max_stretch == 0.0 || (1.0..=1e6).contains(&self.max_stretch)) {
             return Err(Error::setting("max_stretch", format!("{} is not 0 or within 1 to 1e6", self.max_stretch)));

@@ -93,7 +93,7 @@ impl Input {
             filter: FILTERS[usize::from(self.filter % 6)],
             texel_budget: 1 + u32::from(self.budget),
             lines: 2 + u32::from(self.lines % 63),
-            max_anisotropy: (1.0 + f32::from(self.anisotropy) / 64.0).min(1024.0),
+            max_anisotropy: 1.0 + f32::from(self.anisotropy) / 64.0,
             far_field: false,
             ..Settings::default()
         }

@@ -53,7 +53,7 @@ struct FilterOptions {
     /// Choose the mip level so that an ellipse holds at most N texels; 0: always the full texture, as in the paper
     #[arg(long, value_name = "N", default_value_t = DEFAULT.texel_budget)]
     texel_budget: u32,
-    /// Longest ellipse, as the ratio of its axes, 1 to 1024; longer ones are widened
+    /// Longest ellipse, as the ratio of its axes, 1 to 1e6; longer ones are widened
     #[arg(long, value_name = "N", default_value_t = DEFAULT.max_anisotropy, value_parser = values::number, allow_hyphen_values = true)]
     max_anisotropy: f32,
     /// For --filter visible: a derivative of formula (3) this many times as long as that of (2) is a jump of the relief,
