@@ -66,13 +66,14 @@ fn settings() -> impl Strategy<Value = Settings> {
         pick(&[Lighting::Unlit, Lighting::Lit]),
         any::<[bool; 3]>(),
     );
-    let sizes = (side(), side(), count(), count(), count(), prop_oneof![5 => 1.0_f32..80.0, 1 => number()]);
+    let limit = || prop_oneof![5 => 1.0_f32..80.0, 1 => number()];
+    let sizes = (side(), side(), count(), count(), count(), [limit(), limit()]);
     let grids = (pick(&[1, 1, 4, 8, 0, 2, u32::MAX]), pick(&[8, 16, 32, 64, 256, 32, 8, 0, 7, 512, u32::MAX]));
     let texels = prop_oneof![0_u32..300, any::<u32>()];
     (modes, sizes, grids, texels).prop_map(
         |(
             (filter, visibility, derivatives, formulas, lighting, [parallax, far_field, cull_back_faces]),
-            (width, height, samples, lines, far_field_mib, max_anisotropy),
+            (width, height, samples, lines, far_field_mib, [max_anisotropy, max_stretch]),
             (msaa, tile_size),
             texel_budget,
         )| Settings {
@@ -85,6 +86,7 @@ fn settings() -> impl Strategy<Value = Settings> {
             formulas,
             texel_budget,
             max_anisotropy,
+            max_stretch,
             samples,
             lines,
             far_field,

@@ -23,7 +23,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     match Place::of(path)? {
         Place::Stream => OpenOptions::new().write(true).open(path).and_then(|mut stream| stream.write_all(bytes)),
         Place::File { target, permissions } => temporary_beside(&target).and_then(|mut file| {
-            file.write_all(bytes)?;
+            // Its own writer would name the temporary file in an error.
+            file.as_file_mut().write_all(bytes)?;
             permissions.map_or(Ok(()), |permissions| fs::set_permissions(file.path(), permissions))?;
             file.as_file().sync_all()?;
             file.persist(&target)?;
