@@ -64,7 +64,7 @@ pub enum Lighting {
 /// How a frame is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Width of the frame in pixels, 1 to 32768. Default: 1280.
+    /// Width of the frame in pixels, 1 to 32768; width times height is at most 2^28. Default: 1280.
     pub width: u32,
     /// Height of the frame in pixels, 1 to 32768. Default: 720.
     pub height: u32,
@@ -91,7 +91,8 @@ pub struct Settings {
     /// Most texels across a footprint's shorter axis that `Horizon` sweeps, 2 to 64; picks the mip level, and how many lines
     /// (two for three texels) and bins cut the footprint: more is finer and slower. Default: 10.
     pub lines: u32,
-    /// Whether `Horizon` uses tables of the seen colour for distant footprints. Default: `true`.
+    /// Whether `Horizon` uses tables of the seen colour for distant footprints; made for the first materials whose maps
+    /// have up to 2^22 texels together. Default: `true`.
     pub far_field: bool,
     /// Most memory of the far-field tables of one material in MiB, 1 to 4096. Default: 32.
     pub far_field_mib: u32,
@@ -104,6 +105,9 @@ pub struct Settings {
     /// Side of a tile in pixels: 8, 16, 32, 64, 128 or 256. The picture does not depend on it. Default: 32.
     pub tile_size: u32,
 }
+
+/// Most pixels of a frame: 4 GiB of linear pixels.
+const MAX_PIXELS: u64 = 1 << 28;
 
 impl Default for Settings {
     fn default() -> Self {
@@ -145,6 +149,12 @@ impl Settings {
         };
         within("width", self.width, 1, 32768)?;
         within("height", self.height, 1, 32768)?;
+        if u64::from(self.width) * u64::from(self.height) > MAX_PIXELS {
+            return Err(Error::setting(
+                "width",
+                format!("{} x {} is more than {MAX_PIXELS} pixels", self.width, self.height),
+            ));
+        }
         within("samples", self.samples, 1, 65536)?;
         within("lines", self.lines, 2, 64)?;
         within("far_field_mib", self.far_field_mib, 1, 4096)?;

@@ -73,6 +73,12 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
+/// The names of all files, sorted.
+#[cfg(unix)]
+fn names(folder: &Folder) -> Vec<std::ffi::OsString> {
+    folder.contents().into_iter().map(|(path, _)| path.file_name().unwrap().to_owned()).collect()
+}
+
 fn json(bytes: &[u8]) -> serde_json::Value {
     serde_json::from_slice(bytes).unwrap()
 }
@@ -109,7 +115,7 @@ fn bad_images_are_refused() {
     folder.refuses("compare whole.png cut.png", &["cut.png"]);
     folder.refuses("compare text.png whole.png", &["text.png"]);
     folder.refuses("compare whole.png missing.png", &["missing.png"]);
-    folder.refuses("compare . whole.png", &[".", "not a file"]);
+    folder.refuses("compare . whole.png", &[".", "not a regular file"]);
 }
 
 #[test]
@@ -174,6 +180,7 @@ fn unwritable_outputs_are_refused_before_the_work() {
         folder.refuses(&format!("missing.obj -o {name}"), &[name]);
     }
     folder.refuses("compare missing.png a.png --heatmap no/h.png", &["no/h.png"]);
+    folder.refuses("compare a.png a.png --max-pixels 191", &["a.png", "16 x 12", "--max-pixels"]);
     folder.refuses("missing.obj -o a.png --stats a.png", &["--stats"]);
 }
 
@@ -185,6 +192,23 @@ fn full_disk_is_refused() {
     let output = folder.command("quad.obj --size 8x8 -q -o -").stdout(full).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("stdout"));
+}
+
+/// A file that may not grow past a few kilobytes, like one on a full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn disk_that_fills_up_leaves_the_old_file() {
+    let folder = Folder::new();
+    folder.put("out.bmp", "old");
+    let program = env!("CARGO_BIN_EXE_basrelief");
+    let script = format!("trap '' XFSZ; ulimit -f 8; exec {program} quad.obj --size 200x200 -q -o out.bmp");
+    let output = Command::new("sh").args(["-c", &script]).current_dir(folder.0.path()).output().unwrap();
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.starts_with("basrelief: out.bmp: cannot be written: File too large"), "{message}");
+    assert!(!message.contains(".tmp") && message.lines().count() == 1, "{message}");
+    assert_eq!(names(&folder), ["out.bmp", "quad.obj"]);
+    assert_eq!(fs::read(folder.path("out.bmp")).unwrap(), b"old");
 }
 
 #[test]
@@ -338,10 +362,26 @@ fn interrupt(folder: &Folder, num: u32, end: impl Fn(&mut std::process::Child)) 
     }
 }
 
+/// Kills at so many moments, then checks that the next run removes what the killed ones left.
+#[cfg(unix)]
+fn kill(num: u32) {
+    let folder = Folder::new();
+    interrupt(&folder, num, |child| child.kill().unwrap());
+    folder.succeeds("quad.obj --size 8x8 -q -o out.png");
+    assert_eq!(names(&folder), ["out.png", "quad.obj"]);
+}
+
 #[cfg(unix)]
 #[test]
 fn killed_program_leaves_a_whole_image() {
-    interrupt(&Folder::new(), 20, |child| child.kill().unwrap());
+    kill(20);
+}
+
+#[cfg(unix)]
+#[test]
+#[ignore = "takes longer: cargo test --test cli -- --ignored"]
+fn program_killed_at_100_moments_leaves_a_whole_image() {
+    kill(100);
 }
 
 #[cfg(unix)]
@@ -352,6 +392,5 @@ fn interrupted_program_leaves_nothing_behind() {
         // It may have ended by itself.
         let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).output();
     });
-    let names: Vec<_> = folder.contents().into_iter().map(|(path, _)| path.file_name().unwrap().to_owned()).collect();
-    assert_eq!(names, ["out.png", "quad.obj"]);
+    assert_eq!(names(&folder), ["out.png", "quad.obj"]);
 }

@@ -447,7 +447,7 @@ fn attributes_are_perspective_correct() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(10_000))]
 
     #[test]
     fn any_triangle_is_drawn_without_panic(values in prop::collection::vec(any::<f32>(), 9), msaa in prop::sample::select(vec![1, 4, 8])) {

@@ -1,9 +1,7 @@
 //! Loading: what is read, how it is read, and what is refused with which words.
 
 use basrelief::Error;
-use basrelief::scene::{
-    HeightSense, LoadOptions, Loaded, NormalY, load, load_image_bytes, load_mtl_bytes, load_obj_bytes,
-};
+use basrelief::scene::{HeightSense, LoadOptions, Loaded, NormalY, load, load_obj_bytes};
 use basrelief::texture::{Surface, Wrap};
 use glam::{Vec2, Vec3};
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Rgb, Rgb32FImage, RgbImage, Rgba, RgbaImage};
@@ -526,24 +524,5 @@ fn links_out_of_the_folder_devices_and_pipes_are_refused() {
         files.write("scene/s.obj", QUAD);
         let text = load(&files.path("scene/s.obj"), &options).expect_err("refused").to_string();
         assert!(text.contains("not a regular file"), "{text}");
-    }
-}
-
-#[test]
-fn the_fuzzers_corpora_load_or_are_refused_in_one_line() {
-    type Run = fn(&[u8]) -> Result<(), Error>;
-    let corpora: [(&str, Run); 3] = [
-        ("load_obj", |bytes| load_obj_bytes(bytes, &LoadOptions::default())?.scene.validate()),
-        ("load_mtl", |bytes| load_mtl_bytes(bytes).map(drop)),
-        ("load_image", load_image_bytes),
-    ];
-    for (target, run) in corpora {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
-        let files = fs::read_dir(&folder).expect("a corpus").map(|entry| entry.expect("an entry").path());
-        for path in files {
-            if let Err(error) = run(&fs::read(&path).expect("read")) {
-                assert!(!error.to_string().contains('\n'), "{}: {error}", path.display());
-            }
-        }
     }
 }

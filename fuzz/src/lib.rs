@@ -3,7 +3,9 @@
 use arbitrary::Arbitrary;
 use basrelief::invariants::Pixel;
 use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Filter, Settings};
+use basrelief::{Camera, Filter, Light, Material, Mesh, Scene, Settings};
+use glam::{Vec2, Vec3};
+use std::sync::Arc;
 
 /// A number: mostly within -2 to 2, at times any float.
 #[derive(Arbitrary, Clone, Copy, Debug)]
@@ -51,6 +53,30 @@ impl Input {
         }
     }
 
+    /// The colours of [`maps`](Self::maps) the other way round.
+    pub fn inverted(&self) -> ColorImage {
+        let mut image = self.maps().albedo.expect("an albedo");
+        image.texels.iter_mut().flatten().for_each(|c| *c = 65535 - *c);
+        image
+    }
+
+    /// Repeating maps of 16 x 16 texels, which turn and shift exactly, with depths that can be halved.
+    pub fn even_maps(&self) -> SurfaceMaps {
+        let at = |x: u32, y: u32, i: u32| self.texels[((5 * x + 7 * y + x * y + i) % 24) as usize];
+        let color = |x, y| [at(x, y, 3), at(x, y, 11), at(x, y, 17)].map(|c| f32::from(c) / 255.0);
+        let mut height = HeightImage::from_fn(16, 16, |x, y| f32::from(at(x, y, 0)) / 255.0);
+        height.texels.iter_mut().for_each(|h| *h = *h & !3 | 2);
+        SurfaceMaps { albedo: Some(ColorImage::from_fn(16, 16, color)), height: Some(height), ..Default::default() }
+    }
+
+    /// The pixel at a 1024th of a repeat within one of the middle, and with derivatives of up to half a repeat.
+    pub fn near_pixel(&self) -> Pixel {
+        let [center, dx, dy, view] = self.footprint.map(|pair| pair.map(Number::get));
+        let within = |pair: [f32; 2], most: f32| pair.map(|c| if c.abs() <= most { c } else { most });
+        let center = within(center, 1.0).map(|c| (c * 1024.0).round() / 1024.0);
+        Pixel::new(center, within(dx, 0.5), within(dy, 0.5), within(view, 0.6))
+    }
+
     pub fn surface(&self) -> Surface {
         Surface::new(self.maps()).expect("valid maps")
     }
@@ -78,5 +104,21 @@ impl Input {
 pub fn hold(checked: Result<(), String>) {
     if let Err(reason) = checked {
         panic!("{reason}");
+    }
+}
+
+/// A floor of small steps under a light, which command lines place a camera and lights around.
+pub fn floor() -> Scene {
+    let steps = HeightImage::from_fn(8, 8, |x, y| ((x + y) % 4) as f32 / 3.0);
+    let surface = Surface::new(SurfaceMaps { height: Some(steps), ..Default::default() }).expect("valid maps");
+    let corners = [(-4.0, 4.0), (4.0, 4.0), (4.0, -4.0), (-4.0, -4.0)];
+    let positions = corners.map(|(x, z)| Vec3::new(x, -1.0, z)).to_vec();
+    let tex_coords = corners.map(|(x, z)| Vec2::new(x, -z)).to_vec();
+    Scene {
+        meshes: vec![Mesh::new(positions, tex_coords, vec![], vec![[0, 1, 2], [0, 2, 3]])],
+        materials: vec![Material { surface: Some(Arc::new(surface)), ..Material::default() }],
+        camera: Camera::framing(Vec3::splat(-4.0), Vec3::splat(4.0)),
+        lights: vec![Light::Directional { to_light: Vec3::Y, intensity: Vec3::ONE }],
+        ..Scene::default()
     }
 }

@@ -1,6 +1,7 @@
 //! The command line as a whole. The options of frames and scenes stand in `settings` and `scene`.
 
 use super::{scene::SceneOptions, settings::SettingsOptions, values, version};
+use basrelief::metrics::Picture;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -62,6 +63,9 @@ pub(crate) struct CompareOptions {
     /// An image of the same size
     #[arg(value_name = "B")]
     pub(crate) b: PathBuf,
+    /// Most pixels of an image; they take 32 bytes each while they are read
+    #[arg(long, value_name = "N", default_value_t = Picture::MAX_PIXELS, value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
+    pub(crate) max_pixels: u64,
     /// Exit with code 1 if the peak signal-to-noise ratio is below DB decibels
     #[arg(long, value_name = "DB", value_parser = values::decibels, allow_hyphen_values = true)]
     pub(crate) min_psnr: Option<f64>,

@@ -1,7 +1,7 @@
 //! `basrelief compare`: how far two images are apart.
 
 use super::args::CompareOptions;
-use super::{Refusal, output};
+use super::{Refusal, output, settings};
 use basrelief::Error;
 use basrelief::metrics::{self, Difference, Picture};
 use serde::Serialize;
@@ -26,7 +26,7 @@ struct Report {
 /// Compares the images that the options name.
 pub(super) fn run(options: &CompareOptions) -> Result<ExitCode, Refusal> {
     let format = options.heatmap.as_deref().map(output::image_format).transpose()?;
-    let open = |path| Picture::open(path).map_err(|e| e.to_string());
+    let open = |path| Picture::open_within(path, options.max_pixels).map_err(|e| settings::refusal(&e));
     let (a, b) = (open(&options.a)?, open(&options.b)?);
     let difference = metrics::compare(&a, &b).map_err(|e| refusal(options, &e))?;
     if let (Some(path), Some(format)) = (&options.heatmap, format) {

@@ -14,19 +14,20 @@ mod stats;
 mod values;
 mod version;
 
-use args::{Cli, Command};
+pub(crate) use args::{Cli, Command};
 use clap::Parser;
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Why a subcommand ends early: one line for the user.
-type Refusal = String;
+pub(crate) type Refusal = String;
 
 /// Runs the subcommand that the command line names.
 pub(crate) fn run() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let cli = match parse(std::env::args_os()) {
         Ok(cli) => cli,
-        Err(e) if e.use_stderr() => return refuse(&usage_line(&e)),
-        Err(help) => return print_help(&help),
+        Err(Ending::Refused(text)) => return refuse(&text),
+        Err(Ending::Help(help)) => return print_help(&help),
     };
     output::finish_writing_on_interrupt();
     let outcome = match cli.command.unwrap_or(Command::Render(cli.render)) {
@@ -34,6 +35,19 @@ pub(crate) fn run() -> ExitCode {
         Command::Compare(options) => compare::run(&options),
     };
     outcome.unwrap_or_else(|refusal| refuse(&refusal))
+}
+
+/// How a command line that does not parse ends the program.
+pub(crate) enum Ending {
+    Refused(Refusal),
+    /// Help or version, asked for.
+    Help(clap::Error),
+}
+
+/// Takes a command line apart, the program's name first.
+pub(crate) fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, Ending> {
+    Cli::try_parse_from(arguments)
+        .map_err(|e| if e.use_stderr() { Ending::Refused(usage_line(&e)) } else { Ending::Help(e) })
 }
 
 fn refuse(text: &str) -> ExitCode {
@@ -56,7 +70,7 @@ fn usage_line(error: &clap::Error) -> String {
 }
 
 /// `text` with control characters, such as a line break in a file's name, made visible.
-fn one_line(text: &str) -> String {
+pub(crate) fn one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()
 }
 

@@ -36,7 +36,12 @@ pub(super) fn image_format(path: &Path) -> Result<Format, Refusal> {
 
 /// Checks before the work that a file can be written.
 pub(super) fn check(path: &Path) -> Result<(), Refusal> {
-    if is_stdout(path) { Ok(()) } else { check_writable(path).map_err(|e| e.to_string()) }
+    if is_stdout(path) {
+        return Ok(());
+    }
+    // The check, too, makes a temporary file.
+    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+    check_writable(path).map_err(|e| e.to_string())
 }
 
 /// Writes a whole file, or stdout.

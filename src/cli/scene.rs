@@ -129,9 +129,14 @@ impl SceneOptions {
             Some(obj) => scene::load(obj, &self.load_options(is_lit)).map_err(|e| refusal(&e))?,
             None => built_in(),
         };
-        self.camera.place(&mut loaded.scene.camera);
-        self.lights.set(&mut loaded.scene);
+        self.set(&mut loaded.scene);
         Ok(loaded)
+    }
+
+    /// Sets the camera, lights and background that are given.
+    pub(crate) fn set(&self, scene: &mut Scene) {
+        self.camera.place(&mut scene.camera);
+        self.lights.set(scene);
     }
 
     fn load_options(&self, is_lit: bool) -> LoadOptions {

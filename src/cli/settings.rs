@@ -116,7 +116,7 @@ pub(crate) fn refusal(error: &Error) -> Refusal {
 }
 
 /// Fields of the load options that messages about files name.
-const LIMITS: &[&str] = &["max_image_side", "max_image_mib", "max_triangles", "max_textures"];
+const LIMITS: &[&str] = &["max_image_side", "max_image_mib", "max_triangles", "max_textures", "max_pixels"];
 
 fn with_options(text: String) -> Refusal {
     LIMITS.iter().fold(text, |text, field| text.replace(field, &option_of(field)))

@@ -25,7 +25,7 @@ use crate::simd::{TexelLanes, u32x8};
 use crate::texture::Surface;
 
 /// Most texels of an ellipse, whatever the budget: larger ones take a coarser level, so that a pixel's time is bounded.
-const MAX_TEXELS: f32 = (1 << 20) as f32;
+pub(crate) const MAX_TEXELS: f32 = (1 << 20) as f32;
 
 /// What a filter returns: means of the stored texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

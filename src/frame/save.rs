@@ -1,10 +1,16 @@
 //! Files that are there as a whole or not at all.
+//!
+//! A temporary file is locked while its writer lives, so that one that a killed writer left behind is known by its lock
+//! being free, and the next check of the same folder removes it.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File, OpenOptions, Permissions};
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
+
+/// What the names of temporary files begin and end with.
+const TEMPORARY: [&str; 2] = [".basrelief-", ".tmp"];
 
 /// Writes `bytes` to the file `path`, replacing what was there in one step: at any moment, even if the process is
 /// killed or the disk fills up, the file is the whole old or the whole new one.
@@ -17,7 +23,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     match Place::of(path)? {
         Place::Stream => OpenOptions::new().write(true).open(path).and_then(|mut stream| stream.write_all(bytes)),
         Place::File { target, permissions } => temporary_beside(&target).and_then(|mut file| {
-            file.write_all(bytes)?;
+            // Its own writer would name the temporary file in an error.
+            file.as_file_mut().write_all(bytes)?;
             permissions.map_or(Ok(()), |permissions| fs::set_permissions(file.path(), permissions))?;
             file.as_file().sync_all()?;
             file.persist(&target)?;
@@ -27,7 +34,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     .map_err(|e| Error::file(path, format!("cannot be written: {e}")))
 }
 
-/// Checks, before the work, that [`write_whole`] could write the file `path`: its folder exists and takes files.
+/// Checks, before the work, that [`write_whole`] could write the file `path`: its folder exists and takes files. Removes
+/// from the folder what writers that were killed left there.
 ///
 /// # Errors
 /// Names the file and what is in the way.
@@ -35,6 +43,7 @@ pub fn check_writable(path: &Path) -> Result<()> {
     match Place::of(path)? {
         Place::Stream => Ok(()),
         Place::File { target, .. } => {
+            remove_abandoned(folder(&target));
             temporary_beside(&target).map(drop).map_err(|e| Error::file(path, format!("cannot be written: {e}")))
         }
     }
@@ -75,18 +84,41 @@ fn folder(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-fn temporary_beside(target: &Path) -> std::io::Result<NamedTempFile> {
+/// A temporary file in the target's folder, locked.
+fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
     let mut name = tempfile::Builder::new();
-    name.prefix(".basrelief-").suffix(".tmp");
+    name.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]);
     // The crate's own choice, readable by the owner alone, is for secrets; the user's mask shall decide.
     #[cfg(unix)]
     name.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    // Its message names the temporary file, of which the user knows nothing: keep the kind only.
-    name.tempfile_in(folder(target)).map_err(|e| e.kind().into())
+    loop {
+        // Its message names the temporary file, of which the user knows nothing: keep the kind only.
+        let file = name.tempfile_in(folder(target)).map_err(|e| io::Error::from(e.kind()))?;
+        // Where files cannot be locked, none is ever taken for abandoned.
+        let _ = file.as_file().lock();
+        // Another process may have taken it for abandoned in the moment before it was locked.
+        if file.path().exists() {
+            return Ok(file);
+        }
+    }
+}
+
+/// Removes temporary files whose writers are gone. What cannot be removed stays.
+fn remove_abandoned(folder: &Path) {
+    let is_temporary = |name: &str| name.starts_with(TEMPORARY[0]) && name.ends_with(TEMPORARY[1]);
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries.filter(|entry| entry.file_name().to_str().is_some_and(is_temporary)) {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        // Held until the file is removed, so that a writer that has just made it sees that it is gone.
+        let lock = if is_file { File::open(entry.path()).ok() } else { None };
+        if lock.as_ref().is_some_and(|file| file.try_lock().is_ok()) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Makes the new name last through a power failure, where folders can be flushed.
-fn flush_folder(target: &Path) -> std::io::Result<()> {
+fn flush_folder(target: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder(target))?.sync_all() } else { Ok(()) }
 }
 
@@ -119,6 +151,20 @@ mod tests {
             assert!(text.contains(reason) && text.contains(&path.display().to_string()), "{text}");
             assert_eq!(write_whole(path, b"x").unwrap_err().to_string(), text);
         }
+    }
+
+    #[test]
+    fn what_killed_writers_left_is_removed_and_what_living_ones_write_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let living = temporary_beside(&path).unwrap();
+        fs::write(folder.path().join(".basrelief-abc.tmp"), "half an image").unwrap();
+        fs::write(folder.path().join(".basrelief-abc.png"), "the user's own").unwrap();
+        check_writable(&path).unwrap();
+        let mut found = names(folder.path());
+        found.sort();
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!(living.path().exists() && found.contains(&".basrelief-abc.png".into()), "{found:?}");
     }
 
     #[cfg(unix)]

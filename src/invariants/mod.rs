@@ -25,6 +25,7 @@
 //! ```
 
 mod frames;
+mod means;
 mod pixel;
 mod sets;
 mod symmetry;
@@ -32,7 +33,8 @@ mod weights;
 
 pub use crate::filter::Footprint;
 pub use frames::{fan_is_hit_once, frame_is_finite, march_finds_first_hit};
-pub use pixel::{Pixel, anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels};
+pub use means::{flat_relief_hides_nothing, linear_in_texture, same_for_same_ellipse};
+pub use pixel::{Pixel, anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels, work_is_bounded};
 pub use sets::visible_sets;
 pub use symmetry::{mirrored, same_when_scaled, shifted, turned};
 pub use weights::{horizon_weights, records_are_visible};

@@ -117,3 +117,25 @@ pub fn anisotropy_limit_only_limits(surface: &Surface, pixel: &Pixel, settings: 
     let (a, b) = (with(limit), with((limit * 64.0).min(1e6)));
     ensure(!is_below || a == b, || format!("{a:?} with {limit}, {b:?} with a higher limit"))
 }
+
+/// The work of one pixel is bounded, whatever its footprint: `Ewa` and `Visible` test at most the texel budget's texels, or
+/// a million where it is 0, up to an edge's; they take no more than they tested, and the coarsest level is one texel.
+///
+/// # Errors
+/// Says what broke.
+pub fn work_is_bounded(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Checked {
+    let Pixel { footprint, displacement } = pixel;
+    let most = if settings.texel_budget == 0 { filter::MAX_TEXELS as u64 } else { u64::from(settings.texel_budget) };
+    let (index, ellipse) = filter::level_within_budget(surface, footprint, settings);
+    for hidden_by in [None, Some(*displacement)] {
+        let (_, [tested, taken]) =
+            filter::ellipse_mean(surface, footprint, hidden_by, settings, &mut TexelSet::default());
+        // Texel centres in an ellipse are as many as its area holds, give or take those of its edge.
+        let edge = (8.0 * ellipse.squared_axes()[1].sqrt()) as u64 + 8;
+        let is_coarsest = index + 1 == surface.levels.len();
+        ensure(taken <= tested && (is_coarsest || tested <= most + edge), || {
+            format!("{tested} texels tested, {taken} taken, of a budget of {most} at level {index}")
+        })?;
+    }
+    Ok(())
+}

@@ -2,8 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Frame;
+use crate::scene::decode::{self, ImageLimits};
 use crate::texture::srgb_from_linear;
-use image::{ColorType, ImageReader, Limits};
+use image::ColorType;
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -15,10 +16,10 @@ pub struct Picture {
     pixels: Vec<[f32; 4]>,
 }
 
-/// Most pixels of a picture that is opened: 1 GiB as [`Picture`].
-const MAX_PIXELS: u64 = 1 << 26;
-
 impl Picture {
+    /// Most pixels that [`open`](Self::open) takes, 4096 x 4096: two pictures can be compared within 1 GiB.
+    pub const MAX_PIXELS: u64 = 1 << 24;
+
     /// A picture from rows of pixels, the top row first. Values are clamped to 0 to 1; NaN becomes 0.
     ///
     /// # Errors
@@ -34,10 +35,29 @@ impl Picture {
     /// Reads an image file: PNG, JPEG, TGA, TIFF, BMP, EXR or HDR. Float formats are taken as linear, others as sRGB.
     ///
     /// # Errors
-    /// Names the file and why it cannot be read.
+    /// Names the file and why it cannot be read, or that it has more than [`MAX_PIXELS`](Self::MAX_PIXELS) pixels.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        Self::open_within(path, Self::MAX_PIXELS)
+    }
+
+    /// As [`open`](Self::open), with another limit of the number of pixels; one takes 32 bytes while it is read.
+    ///
+    /// # Errors
+    /// Names the file and why it cannot be read, or that it has more than `max_pixels` pixels.
+    pub fn open_within(path: impl AsRef<Path>, max_pixels: u64) -> Result<Self> {
         let path = path.as_ref();
-        read(path).map_err(|reason| Error::file(path, reason))
+        // The widest sample format has 16 bytes a pixel.
+        let limits =
+            ImageLimits { side: u32::MAX, texels: max_pixels, bytes: max_pixels.saturating_mul(16).max(1 << 20) };
+        let image = decode::image(path, limits)?;
+        let (width, height) = (image.width(), image.height());
+        let is_linear = matches!(image.color(), ColorType::Rgb32F | ColorType::Rgba32F);
+        let pixels = image.into_rgba32f().into_raw().as_chunks().0.to_vec();
+        if is_linear {
+            let frame = Frame { width, height, pixels };
+            return Ok(Self::from(&frame));
+        }
+        Self::new(width, height, pixels)
     }
 
     /// Pixels a row.
@@ -65,7 +85,8 @@ impl Picture {
 }
 
 impl From<&Frame> for Picture {
-    /// The frame without rounding to 8 bits; linear values above 1 are clamped, as they are in 8-bit files.
+    /// The frame without rounding to 8 bits; linear values above 1 are clamped, as they are in 8-bit files. Pixels that a
+    /// frame made by hand lacks are transparent, and those that it has too many are left out.
     fn from(frame: &Frame) -> Self {
         let encode = |&[r, g, b, opacity]: &[f32; 4]| {
             let opacity = clamped(opacity);
@@ -74,46 +95,13 @@ impl From<&Frame> for Picture {
             let [r, g, b] = [r, g, b].map(|c| srgb_from_linear(c / divisor));
             [r, g, b, opacity]
         };
-        Self { width: frame.width, height: frame.height, pixels: frame.pixels.par_iter().map(encode).collect() }
+        let mut pixels: Vec<_> = frame.pixels.par_iter().map(encode).collect();
+        pixels.resize(frame.width as usize * frame.height as usize, [0.0; 4]);
+        Self { width: frame.width, height: frame.height, pixels }
     }
 }
 
 /// `value` within 0 to 1; NaN, which `f32::clamp` would keep, gives 0.
 fn clamped(value: f32) -> f32 {
     if value > 0.0 { value.min(1.0) } else { 0.0 }
-}
-
-/// A result whose error is said of a file.
-type Reason<T> = std::result::Result<T, String>;
-
-fn text(error: impl ToString) -> String {
-    error.to_string()
-}
-
-fn read(path: &Path) -> Reason<Picture> {
-    // A pipe would block, and a device need not end.
-    if std::fs::metadata(path).map_err(text)?.is_file() {
-        // Decoders may panic on hostile files.
-        std::panic::catch_unwind(|| decode(path)).unwrap_or_else(|_| Err("the decoder failed".into()))
-    } else {
-        Err("is not a file".into())
-    }
-}
-
-fn decode(path: &Path) -> Reason<Picture> {
-    let open = || ImageReader::open(path)?.with_guessed_format();
-    let (width, height) = open().map_err(text)?.into_dimensions().map_err(text)?;
-    if u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return Err(format!("{width}x{height} is more than {MAX_PIXELS} pixels"));
-    }
-    let mut reader = open().map_err(text)?;
-    reader.limits(Limits::default());
-    let image = reader.decode().map_err(text)?;
-    let is_linear = matches!(image.color(), ColorType::Rgb32F | ColorType::Rgba32F);
-    let pixels = image.into_rgba32f().into_raw().as_chunks().0.to_vec();
-    if is_linear {
-        let frame = Frame { width, height, pixels };
-        return Ok(Picture::from(&frame));
-    }
-    Picture::new(width, height, pixels).map_err(text)
 }

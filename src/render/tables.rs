@@ -7,6 +7,10 @@ use crate::settings::{Filter, Lighting, Settings};
 use crate::texture::Surface;
 use std::sync::{Arc, Mutex};
 
+/// Most texels of all surfaces together that far-field tables are built for: some seconds of work. Surfaces beyond, in the
+/// order of the materials, are drawn without.
+const MOST_FAR_TEXELS: usize = 1 << 22;
+
 /// What every frame of a scene needs besides the scene.
 #[derive(Debug)]
 pub(super) struct Tables {
@@ -52,14 +56,19 @@ impl Tables {
             self.far_fields.fill(None);
             self.far_field_mib = 0;
         } else if self.far_field_mib != settings.far_field_mib {
-            self.far_fields = per_surface(scene, |surface| FarField::new(surface, settings));
+            let mut left = MOST_FAR_TEXELS;
+            self.far_fields = per_surface(scene, |surface| {
+                let [width, height] = [surface.levels[0].width, surface.levels[0].height];
+                left = left.checked_sub(width * height)?;
+                FarField::new(surface, settings)
+            });
             self.far_field_mib = settings.far_field_mib;
         }
     }
 }
 
 /// What is made of each material's surface, if that has relief: one per distinct surface.
-fn per_surface<T>(scene: &Scene, make: impl Fn(&Surface) -> Option<T>) -> Vec<Option<Arc<T>>> {
+fn per_surface<T>(scene: &Scene, mut make: impl FnMut(&Surface) -> Option<T>) -> Vec<Option<Arc<T>>> {
     let mut made: Vec<(Arc<Surface>, Option<Arc<T>>)> = Vec::new();
     let mut of = |surface: &Arc<Surface>| {
         if let Some((_, table)) = made.iter().find(|(other, _)| Arc::ptr_eq(other, surface)) {

@@ -15,41 +15,48 @@ use std::path::Path;
 
 /// What one image may need.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ImageLimits {
+pub(crate) struct ImageLimits {
     /// Texels a side.
-    pub(super) side: u32,
+    pub(crate) side: u32,
+    /// Texels in all.
+    pub(crate) texels: u64,
     /// Bytes while it is decoded.
-    pub(super) bytes: u64,
+    pub(crate) bytes: u64,
 }
 
 /// What the head of an image file says.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ImageInfo {
-    pub(super) size: [u32; 2],
-    pub(super) num_bytes: u64,
+pub(crate) struct ImageInfo {
+    pub(crate) size: [u32; 2],
+    pub(crate) num_bytes: u64,
     color: ColorType,
 }
 
 impl ImageInfo {
     /// Whether the format has a single channel of light.
-    pub(super) fn is_gray_format(&self) -> bool {
+    pub(crate) fn is_gray_format(&self) -> bool {
         !self.color.has_color()
     }
 }
 
 /// Reads only the head of an image file.
-pub(super) fn probe(path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
+pub(crate) fn probe(path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
     run(path, || info(decoder(open(path, limits)?, path, limits)?.as_ref()))
 }
 
 /// Decodes an image file.
+pub(crate) fn image(path: &Path, limits: ImageLimits) -> Result<DynamicImage> {
+    run(path, || image_from(open(path, limits)?, path, limits))
+}
+
+/// Decodes an image file to its samples.
 pub(super) fn decode(path: &Path, limits: ImageLimits) -> Result<Samples> {
-    run(path, || decode_from(open(path, limits)?, path, limits))
+    run(path, || samples(image_from(open(path, limits)?, path, limits)?))
 }
 
 /// Decodes an image in memory; `path` serves for messages and for formats without a signature.
 pub(super) fn decode_bytes(bytes: &[u8], path: &Path, limits: ImageLimits) -> Result<Samples> {
-    run(path, || decode_from(std::io::Cursor::new(bytes), path, limits))
+    run(path, || samples(image_from(std::io::Cursor::new(bytes), path, limits)?))
 }
 
 /// Runs a decoder; its panic is a refusal of the file.
@@ -92,6 +99,9 @@ fn decoder<'a, R: BufRead + Seek + 'a>(
     if width > limits.side || height > limits.side {
         return Err(format!("{width} x {height} texels: the limit is {} a side (max_image_side)", limits.side));
     }
+    if u64::from(width) * u64::from(height) > limits.texels {
+        return Err(format!("{width} x {height} is more than {} pixels (max_pixels)", limits.texels));
+    }
     if decoder.total_bytes() > limits.bytes {
         let mib = limits.bytes >> 20;
         return Err(format!("{width} x {height} texels need more than {mib} MiB (max_image_mib)"));
@@ -119,8 +129,14 @@ fn info(decoder: &dyn ImageDecoder) -> std::result::Result<ImageInfo, String> {
     Ok(ImageInfo { size: [width, height], num_bytes: decoder.total_bytes(), color: decoder.color_type() })
 }
 
-fn decode_from<R: BufRead + Seek>(reader: R, path: &Path, limits: ImageLimits) -> std::result::Result<Samples, String> {
-    let decoder = decoder(reader, path, limits)?;
-    let image = DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?;
+fn image_from<R: BufRead + Seek>(
+    reader: R,
+    path: &Path,
+    limits: ImageLimits,
+) -> std::result::Result<DynamicImage, String> {
+    DynamicImage::from_decoder(decoder(reader, path, limits)?).map_err(|e| e.to_string())
+}
+
+fn samples(image: DynamicImage) -> std::result::Result<Samples, String> {
     Samples::new(image).ok_or_else(|| "an image of an unknown sample format".into())
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// A light. Intensities are linear RGB, 0 or more; a white surface that faces an intensity of 1 is drawn white.
+/// A light. Intensities are linear RGB, 0 to 1e6; a white surface that faces an intensity of 1 is drawn white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
     /// Light from infinitely far away.
@@ -21,14 +21,23 @@ pub enum Light {
     },
 }
 
+/// Whether linear RGB is within 0 to 1e6.
+pub(super) fn is_light(rgb: Vec3) -> bool {
+    rgb.cmpge(Vec3::ZERO).all() && rgb.cmple(Vec3::splat(1e6)).all()
+}
+
 impl Light {
     pub(crate) fn validate(&self) -> Result<(), String> {
         let (place, intensity) = match *self {
             Self::Directional { to_light, intensity } => (to_light, intensity),
             Self::Point { position, intensity } => (position, intensity),
         };
-        if !place.is_finite() || !intensity.is_finite() || intensity.min_element() < 0.0 {
-            return Err("place and intensity must be finite, intensity 0 or more".into());
+        // A comparison with NaN is false.
+        if !place.abs().cmple(Vec3::splat(1e18)).all() {
+            return Err("its place or direction must be finite and within 1e18".into());
+        }
+        if !is_light(intensity) {
+            return Err("its intensity must be within 0 to 1e6".into());
         }
         if matches!(self, Self::Directional { .. }) && place.length_squared() < 1e-30 {
             return Err("the direction to the light must not be zero".into());

@@ -26,7 +26,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// A mesh from its triangles; makes normals (area-weighted) where `normals` is empty, and tangents always.
+    /// A mesh from its triangles; makes normals (area-weighted) where `normals` is empty, and tangents always. Triangles that
+    /// name vertices that do not exist add nothing to either; the renderer refuses them.
     #[must_use]
     pub fn new(positions: Vec<Vec3>, tex_coords: Vec<Vec2>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let mut mesh = Self { positions, tex_coords, normals, triangles, ..Self::default() };
@@ -42,9 +43,14 @@ impl Mesh {
         triangle.map(|i| self.positions[i as usize].as_dvec3())
     }
 
+    /// The triangles whose corners all have an index below `num`.
+    fn triangles_within(&self, num: usize) -> impl Iterator<Item = [u32; 3]> {
+        self.triangles.iter().copied().filter(move |triangle| triangle.iter().all(|&i| (i as usize) < num))
+    }
+
     fn area_weighted_normals(&self) -> Vec<Vec3> {
         let mut sums = vec![DVec3::ZERO; self.positions.len()];
-        for &triangle in &self.triangles {
+        for triangle in self.triangles_within(self.positions.len()) {
             let [a, b, c] = self.corners(triangle);
             let twice_area = (b - a).cross(c - a);
             triangle.iter().for_each(|&i| sums[i as usize] += twice_area);
@@ -54,14 +60,14 @@ impl Mesh {
 
     fn area_weighted_tangents(&self) -> Vec<[Vec3; 2]> {
         let mut sums = vec![([DVec3::ZERO; 2], 0.0_f64); self.tex_coords.len()];
-        for &triangle in self.triangles.iter().filter(|_| !self.tex_coords.is_empty()) {
+        for triangle in self.triangles_within(self.positions.len().min(self.tex_coords.len())) {
             let [a, b, c] = self.corners(triangle);
             let [ta, tb, tc] = triangle.map(|i| self.tex_coords[i as usize].as_dvec2());
             let (e1, e2, t1, t2) = (b - a, c - a, tb - ta, tc - ta);
             let (area_uv, area) = (t1.perp_dot(t2), e1.cross(e2).length());
             let frame = [(e1 * t2.y - e2 * t1.y) / area_uv, (e2 * t1.x - e1 * t2.x) / area_uv];
             if area > 0.0 && frame.iter().all(|axis| (*axis * area).is_finite()) {
-                for &i in &triangle {
+                for i in triangle {
                     let (axes, weight) = &mut sums[i as usize];
                     *axes = [axes[0] + frame[0] * area, axes[1] + frame[1] * area];
                     *weight += area;
@@ -174,6 +180,9 @@ mod tests {
 
     #[test]
     fn wrong_lengths_and_indices_are_refused() {
+        let short =
+            Mesh::new(SQUARE.to_vec(), vec![Vec2::ZERO; 2], vec![Vec3::Z; 3], vec![[0, 1, 2], [1, 2, u32::MAX]]);
+        assert!(short.validate(1).is_err());
         let valid = square(SQUARE.map(|p| p.truncate()), &[[0, 1, 2]]);
         assert!(valid.validate(1).is_ok());
         assert!(valid.validate(0).is_err());

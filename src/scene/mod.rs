@@ -3,7 +3,7 @@
 mod builtin;
 mod camera;
 mod contain;
-mod decode;
+pub(crate) mod decode;
 mod files;
 mod gray_exr;
 mod light;
@@ -45,14 +45,14 @@ pub struct Scene {
     pub camera: Camera,
     /// What lights them under [`Lighting::Lit`](crate::Lighting::Lit).
     pub lights: Vec<Light>,
-    /// Light from everywhere, linear RGB, added to the lights under [`Lighting::Lit`](crate::Lighting::Lit).
+    /// Light from everywhere, linear RGB, 0 to 1e6, added to the lights under [`Lighting::Lit`](crate::Lighting::Lit).
     pub ambient: Vec3,
-    /// Colour where nothing is hit, linear RGB and opacity. Default: black and transparent.
+    /// Colour where nothing is hit, linear RGB, 0 to 1e6, and opacity. Default: black and transparent.
     pub background: [f32; 4],
 }
 
 impl Scene {
-    /// Checks indices, array lengths and that every number is finite.
+    /// Checks indices, array lengths and that every number is within its range.
     ///
     /// # Errors
     /// Names the first part that is not valid.
@@ -68,8 +68,12 @@ impl Scene {
         for (i, light) in self.lights.iter().enumerate() {
             light.validate().map_err(|reason| Error::scene(format!("light {i}"), reason))?;
         }
-        if !self.ambient.is_finite() || !self.background.iter().all(|c| c.is_finite()) {
-            return Err(Error::scene("scene", "ambient and background must be finite"));
+        if !light::is_light(self.ambient) {
+            return Err(Error::scene("scene", "ambient must be within 0 to 1e6"));
+        }
+        let [r, g, b, opacity] = self.background;
+        if !light::is_light(Vec3::new(r, g, b)) || !(0.0..=1.0).contains(&opacity) {
+            return Err(Error::scene("scene", "background must be within 0 to 1e6, its opacity within 0 to 1"));
         }
         Ok(())
     }

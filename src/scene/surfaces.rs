@@ -29,7 +29,11 @@ enum MapImage {
 
 /// The limits of one image.
 pub(super) fn image_limits(options: &LoadOptions) -> ImageLimits {
-    ImageLimits { side: options.max_image_side.min(32768), bytes: u64::from(options.max_image_mib) << 20 }
+    ImageLimits {
+        side: options.max_image_side.min(32768),
+        texels: u64::MAX,
+        bytes: u64::from(options.max_image_mib) << 20,
+    }
 }
 
 /// The surface of each plan; equal plans share one.

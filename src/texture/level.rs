@@ -46,6 +46,13 @@ impl Level {
         Self { width, height, wrap, num_planes, words }
     }
 
+    /// Whether the level holds the texels that its size, which anyone may have changed, promises.
+    pub(super) fn is_whole(&self, wrap: Wrap, has_normals: bool) -> bool {
+        let has_size = [self.width, self.height].iter().all(|n| (1..=65536).contains(n));
+        let num_words = has_size.then(|| self.stride() * self.num_planes * self.height);
+        self.wrap == wrap && self.has_normals() == has_normals && num_words == Some(self.words.len())
+    }
+
     /// The packed texel at a column and row of the endless pattern.
     pub(crate) fn packed(&self, x: i32, y: i32) -> PackedTexel {
         let x = wrap_index(self.wrap, x, self.width) + APRON;

@@ -103,6 +103,32 @@ impl Surface {
         })
     }
 
+    /// Checks that the fields fit together, which those of [`Surface::new`] do.
+    pub(crate) fn validate(&self) -> std::result::Result<(), String> {
+        let is_mirrored = self.wrap == Wrap::Mirror;
+        let pairs = || self.levels.iter().zip(&self.transposed);
+        let fits = |level: &Level, turned: &Level| {
+            level.is_whole(self.wrap, self.has_normals)
+                && turned.is_whole(self.wrap, self.has_normals)
+                && [level.width, level.height] == [turned.height, turned.width]
+        };
+        let shrinks = self.levels.windows(2).all(|pair| {
+            [[pair[0].width, pair[1].width], [pair[0].height, pair[1].height]].iter().all(|[n, half]| half <= n)
+        });
+        if self.levels.is_empty()
+            || self.levels.len() != self.transposed.len()
+            || self.repeats_stored != 1 + u32::from(is_mirrored)
+            || !shrinks
+            || !pairs().all(|(level, turned)| fits(level, turned))
+        {
+            return Err("the levels of its surface do not fit together; Surface::new makes them".into());
+        }
+        if !(0.0..=1.0).contains(&self.relief_depth) || !(self.color_scale > 0.0 && self.color_scale <= 1e6) {
+            return Err("its surface's relief depth must be within 0 to 1, its colour scale above 0, up to 1e6".into());
+        }
+        Ok(())
+    }
+
     /// Texels per texture repeat of a level, along u and v.
     #[must_use]
     pub fn texels_per_repeat(&self, level: usize) -> [f32; 2] {

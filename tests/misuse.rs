@@ -1,0 +1,268 @@
+//! What callers of the library can do wrong: refused with a reason, never a panic.
+
+use basrelief::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps, Wrap};
+use basrelief::{
+    Camera, Derivatives, Error, Filter, Formulas, Frame, Light, Lighting, Material, Mesh, Renderer, Scene, Settings,
+    Visibility, metrics,
+};
+use glam::{Vec2, Vec3};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use std::sync::Arc;
+
+/// What users move to and share between threads.
+const _: () = {
+    const fn is_send_and_sync<T: Send + Sync + Unpin + 'static>() {}
+    is_send_and_sync::<Scene>();
+    is_send_and_sync::<Settings>();
+    is_send_and_sync::<Renderer>();
+    is_send_and_sync::<Frame>();
+    is_send_and_sync::<Surface>();
+    is_send_and_sync::<Error>();
+    is_send_and_sync::<metrics::Picture>();
+    is_send_and_sync::<metrics::Difference>();
+    is_send_and_sync::<basrelief::scene::LoadOptions>();
+    is_send_and_sync::<basrelief::scene::Loaded>();
+    is_send_and_sync::<basrelief::invariants::Pixel>();
+};
+
+fn cases(num: u32) -> ProptestConfig {
+    ProptestConfig { cases: num, rng_seed: RngSeed::Fixed(2017), failure_persistence: None, ..Default::default() }
+}
+
+/// Mostly a tame number, at times any.
+fn number() -> impl Strategy<Value = f32> {
+    let strange = vec![0.0, -0.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e-45, 1e18, 1e30];
+    prop_oneof![12 => -2.0_f32..2.0, 1 => prop::sample::select(strange), 1 => any::<f32>()]
+}
+
+fn vector() -> impl Strategy<Value = Vec3> {
+    prop::array::uniform3(number()).prop_map(Vec3::from)
+}
+
+fn pick<T: Clone + std::fmt::Debug + 'static>(values: &[T]) -> impl Strategy<Value = T> + use<T> {
+    prop::sample::select(values.to_vec())
+}
+
+fn settings() -> impl Strategy<Value = Settings> {
+    // Huge frames are valid; what is drawn here is small or not valid at all.
+    let side = || prop_oneof![15 => 1_u32..20, 1 => Just(0), 1 => 32769..=u32::MAX];
+    let count = || prop_oneof![12 => 1_u32..12, 1 => Just(0), 1 => 65537..=u32::MAX];
+    let filters = [
+        Filter::Nearest,
+        Filter::Bilinear,
+        Filter::Trilinear,
+        Filter::Ewa,
+        Filter::Visible,
+        Filter::Horizon,
+        Filter::Parallax,
+        Filter::Truth,
+    ];
+    let modes = (
+        pick(&filters),
+        pick(&[Visibility::Exact, Visibility::TwoEnded, Visibility::Resolved]),
+        pick(&[Derivatives::Flat, Derivatives::Relief]),
+        pick(&[Formulas::Meant, Formulas::Printed]),
+        pick(&[Lighting::Unlit, Lighting::Lit]),
+        any::<[bool; 3]>(),
+    );
+    let limit = || prop_oneof![5 => 1.0_f32..80.0, 1 => number()];
+    let sizes = (side(), side(), count(), count(), count(), [limit(), limit()]);
+    let grids = (pick(&[1, 1, 4, 8, 0, 2, u32::MAX]), pick(&[8, 16, 32, 64, 256, 32, 8, 0, 7, 512, u32::MAX]));
+    let texels = prop_oneof![0_u32..300, any::<u32>()];
+    (modes, sizes, grids, texels).prop_map(
+        |(
+            (filter, visibility, derivatives, formulas, lighting, [parallax, far_field, cull_back_faces]),
+            (width, height, samples, lines, far_field_mib, [max_anisotropy, max_stretch]),
+            (msaa, tile_size),
+            texel_budget,
+        )| Settings {
+            width,
+            height,
+            filter,
+            visibility,
+            parallax,
+            derivatives,
+            formulas,
+            texel_budget,
+            max_anisotropy,
+            max_stretch,
+            samples,
+            lines,
+            far_field,
+            far_field_mib,
+            lighting,
+            cull_back_faces,
+            msaa,
+            tile_size,
+        },
+    )
+}
+
+/// Maps whose numbers need not fit together.
+fn maps() -> impl Strategy<Value = SurfaceMaps> {
+    let size = || prop_oneof![12 => (1_u32..9, 1_u32..9, Just(0_usize)), 1 => (0_u32..3, any::<u32>(), 0..3_usize)];
+    let wrap = pick(&[Wrap::Repeat, Wrap::Mirror, Wrap::Clamp]);
+    let scalars = (prop_oneof![4 => 0.0_f32..1.0, 1 => number()], prop_oneof![4 => Just(1.0_f32), 1 => number()]);
+    (size(), size(), size(), wrap, scalars, any::<[bool; 4]>(), any::<u16>()).prop_map(
+        |(a, b, c, wrap, (relief_depth, scale), [has_a, has_b, has_c, keep_normals], seed)| {
+            let num = |(w, h, missing): (u32, u32, usize)| (w as usize).saturating_mul(h as usize).min(99) + missing;
+            let value = |i: usize| (i as u16).wrapping_mul(seed);
+            let albedo =
+                || ColorImage { width: a.0, height: a.1, texels: (0..num(a)).map(|i| [value(i); 3]).collect(), scale };
+            let height = || HeightImage { width: b.0, height: b.1, texels: (0..num(b)).map(value).collect() };
+            let normal =
+                || NormalImage { width: c.0, height: c.1, texels: (0..num(c)).map(|i| [value(i) as i16; 3]).collect() };
+            SurfaceMaps {
+                albedo: has_a.then(albedo),
+                height: has_b.then(height),
+                normal: has_c.then(normal),
+                wrap,
+                relief_depth,
+                keep_normals,
+            }
+        },
+    )
+}
+
+/// A surface, at times with fields that were changed after it was made.
+fn surface() -> impl Strategy<Value = Option<Surface>> {
+    let change = prop_oneof![8 => Just(0_u8), 3 => 1_u8..10];
+    (maps(), change, number()).prop_map(|(maps, change, x)| {
+        let mut surface = Surface::new(maps).ok()?;
+        match change {
+            1 => surface.levels.clear(),
+            2 => drop(surface.transposed.pop()),
+            3 => surface.levels[0].width += 1,
+            4 => surface.transposed[0].height = usize::MAX,
+            5 => surface.relief_depth = x,
+            6 => surface.color_scale = x,
+            7 => surface.repeats_stored = 3 - surface.repeats_stored,
+            8 => surface.wrap = if surface.wrap == Wrap::Clamp { Wrap::Repeat } else { Wrap::Clamp },
+            9 => surface.has_normals = !surface.has_normals,
+            _ => {}
+        }
+        Some(surface)
+    })
+}
+
+fn mesh() -> impl Strategy<Value = Mesh> {
+    let index = || prop_oneof![30 => 0_u32..6, 1 => any::<u32>()];
+    let corners = (prop::collection::vec(vector(), 6), prop::collection::vec((number(), number()), 0..8));
+    let triangles = prop::collection::vec(prop::array::uniform3(index()), 0..6);
+    (corners, triangles, any::<[u8; 2]>(), vector()).prop_map(|((positions, uv), triangles, [change, material], v)| {
+        let mut tex_coords: Vec<_> = uv.into_iter().map(Vec2::from).collect();
+        if change % 4 > 0 {
+            tex_coords.resize(6, v.truncate());
+        }
+        let mut mesh = Mesh::new(positions, tex_coords, vec![], triangles);
+        mesh.material = usize::from(material % 8 / 7);
+        match change {
+            200 => mesh.normals.clear(),
+            201 => mesh.normals[0] = v,
+            202 => mesh.tangents.clear(),
+            203 if !mesh.tangents.is_empty() => mesh.tangents[0][1] = v,
+            204 => drop(mesh.positions.pop()),
+            _ => {}
+        }
+        mesh
+    })
+}
+
+fn scene() -> impl Strategy<Value = Scene> {
+    let light = (any::<bool>(), vector(), vector()).prop_map(|(is_point, place, intensity)| match is_point {
+        true => Light::Point { position: place, intensity: intensity.abs() },
+        false => Light::Directional { to_light: place, intensity: intensity.abs() },
+    });
+    let material =
+        (surface(), vector(), vector(), number()).prop_map(|(surface, diffuse, specular, shininess)| Material {
+            surface: surface.map(Arc::new),
+            diffuse: diffuse.abs(),
+            specular: specular.abs(),
+            shininess: shininess.abs(),
+            ..Material::default()
+        });
+    let positive = |most: f32| prop_oneof![8 => 1e-3..most, 1 => number()];
+    let camera = (vector(), vector(), prop_oneof![4 => Just(Vec3::Y), 1 => vector()], positive(170.0), positive(1.0))
+        .prop_map(|(eye, target, up, fov_degrees, near)| Camera { eye, target, up, fov_degrees, near });
+    let colors = (vector(), prop_oneof![5 => Just([0.5; 4]), 1 => prop::array::uniform4(number())]);
+    (prop::collection::vec(mesh(), 0..3), material, camera, prop::collection::vec(light, 0..3), colors).prop_map(
+        |(meshes, material, camera, lights, (ambient, background))| Scene {
+            meshes,
+            materials: vec![material],
+            camera,
+            lights,
+            ambient: ambient.abs(),
+            background,
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(cases(10_000))]
+
+    #[test]
+    fn any_scene_and_settings_are_drawn_or_refused(scene in scene(), settings in settings()) {
+        match Renderer::new(scene, settings.clone()) {
+            Ok(mut renderer) => {
+                let frame = renderer.render();
+                prop_assert_eq!((frame.width, frame.height), (settings.width, settings.height));
+                let bad = frame.pixels.iter().find(|pixel| !pixel.iter().all(|c| c.is_finite() && *c >= 0.0));
+                prop_assert!(bad.is_none(), "{bad:?}");
+            }
+            Err(error) => prop_assert!(!error.to_string().is_empty()),
+        }
+    }
+
+    #[test]
+    fn any_settings_and_camera_are_taken_or_refused_between_frames(before in settings(), after in settings(), eye in vector(), target in vector()) {
+        let Ok(mut renderer) = Renderer::new(Scene::default(), before.clone()) else { return Ok(()) };
+        let is_valid = after.validate().is_ok();
+        prop_assert_eq!(renderer.set_settings(after.clone()).is_ok(), is_valid);
+        prop_assert_eq!(renderer.settings(), if is_valid { &after } else { &before });
+        let camera = Camera { eye, target, ..Camera::default() };
+        prop_assert_eq!(renderer.set_camera(camera).is_ok(), camera.validate().is_ok());
+        renderer.render();
+    }
+
+    #[test]
+    fn any_frames_are_compared_or_refused(sizes in prop::array::uniform4(0_u32..6), lengths in prop::array::uniform2(0_usize..30), value in number()) {
+        let frame = |i: usize| Frame { width: sizes[2 * i], height: sizes[2 * i + 1], pixels: vec![[value, 0.5, -value, 1.0]; lengths[i]] };
+        let (a, b) = (frame(0), frame(1));
+        let _ = metrics::compare(&(&a).into(), &(&b).into());
+        let _ = metrics::heat_map(&(&a).into(), &(&b).into(), value);
+        let is_whole = a.pixels.len() as u32 == a.width * a.height && !a.pixels.is_empty();
+        prop_assert_eq!(a.encode(basrelief::frame::Format::Png).is_ok(), is_whole);
+    }
+}
+
+#[test]
+fn frames_too_large_are_refused_before_memory_is_taken() {
+    let settings = Settings { width: 32768, height: 32768, ..Settings::default() };
+    let text = Renderer::new(Scene::default(), settings).expect_err("refused").to_string();
+    assert_eq!(text, "width: 32768 x 32768 is more than 268435456 pixels");
+}
+
+#[test]
+fn many_renders_run_in_one_process_at_once() {
+    let draw = |filter| {
+        let settings = Settings { width: 40, height: 30, filter, samples: 2, ..Settings::default() };
+        let heights = HeightImage::from_fn(16, 16, |x, y| ((x * 5 + y * 3) % 7) as f32 / 6.0);
+        let maps = SurfaceMaps { height: Some(heights), ..SurfaceMaps::default() };
+        let surface = Arc::new(Surface::new(maps).expect("valid maps"));
+        let corners = [(-4.0, 4.0), (4.0, 4.0), (4.0, -4.0), (-4.0, -4.0)];
+        let positions = corners.map(|(x, z)| Vec3::new(x, -1.0, z)).to_vec();
+        let tex_coords = corners.map(|(x, z)| Vec2::new(x, -z)).to_vec();
+        let mesh = Mesh::new(positions, tex_coords, vec![], vec![[0, 1, 2], [0, 2, 3]]);
+        let materials = vec![Material { surface: Some(surface), ..Material::default() }];
+        basrelief::render(Scene { meshes: vec![mesh], materials, ..Scene::default() }, settings).expect("a frame")
+    };
+    let filters = [Filter::Nearest, Filter::Ewa, Filter::Visible, Filter::Horizon, Filter::Truth];
+    let alone = filters.map(draw);
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..15).map(|i| scope.spawn(move || draw(filters[i % 5]))).collect();
+        for (i, thread) in threads.into_iter().enumerate() {
+            assert!(thread.join().expect("no panic") == alone[i % 5], "{:?}", filters[i % 5]);
+        }
+    });
+}
