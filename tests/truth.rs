@@ -10,7 +10,7 @@ use basrelief::metrics::compare;
 use basrelief::raster::{AttributePlanes, QuadPair};
 use basrelief::relief::{HeightField, displacement, march};
 use basrelief::texture::{Surface, SurfaceMaps};
-use basrelief::{Derivatives, Filter, Frame, Renderer, Scene, Settings, Visibility};
+use basrelief::{Camera, Derivatives, Filter, Frame, Renderer, Scene, Settings, Visibility};
 use common::{cobbles, floor_scene};
 use std::sync::OnceLock;
 
@@ -112,4 +112,46 @@ fn sets_of_texels_are_the_papers_on_every_footprint_of_a_frame() {
         }
     }
     assert!(num > 1000, "{num} footprints");
+}
+
+/// Mean square of how much the error (image less truth) of a filter changes from frame to frame of a slow walk.
+fn unrest(settings: &Settings, truths: &[Frame]) -> f64 {
+    let mut renderer = Renderer::new(floor(), settings.clone()).expect("a valid scene");
+    let errors: Vec<Vec<f32>> = walk(&mut renderer, truths.len())
+        .zip(truths)
+        .map(|(frame, truth)| {
+            let channels =
+                |frame: &Frame| frame.pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect::<Vec<_>>();
+            let encoded = |c: f32| basrelief::texture::srgb_from_linear(c.clamp(0.0, 1.0));
+            channels(&frame).into_iter().zip(channels(truth)).map(|(a, b)| encoded(a) - encoded(b)).collect()
+        })
+        .collect();
+    let squares =
+        errors.windows(2).flat_map(|pair| pair[0].iter().zip(&pair[1]).map(|(a, b)| f64::from(a - b).powi(2)));
+    squares.sum::<f64>() / ((errors.len() - 1) * errors[0].len()) as f64
+}
+
+/// Frames of a walk towards the horizon, a hundredth of a texture repeat each.
+fn walk(renderer: &mut Renderer, num: usize) -> impl Iterator<Item = Frame> {
+    let camera = renderer.scene().camera;
+    (0..num).map(move |i| {
+        let step = glam::Vec3::new(camera.target.x - camera.eye.x, 0.0, camera.target.z - camera.eye.z).normalize();
+        let moved = step * (0.01 * i as f32);
+        renderer
+            .set_camera(Camera { eye: camera.eye + moved, target: camera.target + moved, ..camera })
+            .expect("a camera");
+        renderer.render()
+    })
+}
+
+#[test]
+fn horizon_is_steady_in_motion() {
+    let small = |filter| Settings { width: 96, height: 54, samples: 256, far_field: true, ..settings(filter) };
+    let mut renderer = Renderer::new(floor(), small(Filter::Truth)).expect("a valid scene");
+    let truths: Vec<_> = walk(&mut renderer, 8).collect();
+    let horizon = unrest(&small(Filter::Horizon), &truths);
+    let parallax = unrest(&Settings { samples: 4, ..small(Filter::Parallax) }, &truths);
+    // A twentieth, over 60 frames too.
+    println!("mean square of the error's change: horizon {horizon:e}, parallax with 4 rays {parallax:e}");
+    assert!(horizon < 0.1 * parallax, "{horizon:e} against {parallax:e}");
 }
