@@ -1,7 +1,7 @@
 //! A pixel from the tables: elliptical weighted average over the blend of four directions.
 
 use super::encode::{UNITS, decode};
-use super::{FarField, FarImage};
+use super::{FarField, FarImage, NUM_LENGTHS};
 use crate::filter::texel_set::{RowQuadric, lane_columns};
 use crate::filter::{Ellipse, Filtered, Footprint, PixelFootprints};
 use crate::settings::{Formulas, Settings};
@@ -14,16 +14,35 @@ const TEXELS_ACROSS: f32 = 3.0;
 /// Most texels along the longer axis: a thin footprint at the horizon takes a coarser table.
 const TEXELS_ALONG: f32 = 64.0;
 
-/// Texels of the finest table across a footprint where the tables begin to count, and where nothing else counts.
-const HAND_OVER: [f32; 2] = [3.0, 4.0];
+/// Texels of the finest table across a footprint where the tables begin to count, where sweeps lose nothing by their levels
+/// and where they do.
+const HAND_OVER: [f32; 2] = [4.5, 3.0];
+
+/// Times as many where nothing but the tables counts.
+const HAND_OVER_END: f32 = 4.0 / 3.0;
 
 impl FarField {
     /// How much of the colour of eight pixels the tables give, 0 to 1: all of it where a footprint is large.
     #[must_use]
     pub fn shares(&self, surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> PixelLanes {
         let across = pixels.width(surface.texels_per_repeat(self.first_level), settings.max_anisotropy);
-        let share = (across - HAND_OVER[0]) * (1.0 / (HAND_OVER[1] - HAND_OVER[0]));
+        if across.simd_le(PixelLanes::splat(HAND_OVER[1])).all() {
+            return PixelLanes::ZERO;
+        }
+        let base = surface.texels_per_repeat(0);
+        let [du, dv] = pixels.displacement.map(PixelLanes::to_array);
+        let start = std::array::from_fn(|i| self.hand_over([du[i] * base[0], dv[i] * base[1]]));
+        let start = PixelLanes::new(start);
+        let share = (across - start) / (start * (HAND_OVER_END - 1.0));
         share.fast_max(PixelLanes::ZERO).fast_min(PixelLanes::ONE)
+    }
+
+    /// Where the tables begin to count for a displacement in base texels, between those of the nearest lengths.
+    fn hand_over(&self, displacement: [f32; 2]) -> f32 {
+        let place = self.place_of_length(displacement);
+        let near = (place as usize).min(NUM_LENGTHS - 2);
+        let [near_start, far_start] = [near, near + 1].map(|length| HAND_OVER[self.level_bias[length].min(1)]);
+        near_start + (far_start - near_start) * (place - near as f32)
     }
 
     /// The mean of what is seen in a footprint around its base coordinate, for a displacement in repeats.
