@@ -235,17 +235,18 @@ fn skinny_and_fat_textures_look_like_square_ones() {
     };
     let (plain, skinny, fat) = (surface([1, 1]), surface([4, 1]), surface([1, 4]));
     let mut random = Random(4);
-    for filter in [Filter::Ewa, Filter::Horizon] {
+    for (filter, most) in [(Filter::Ewa, 0.06), (Filter::Horizon, 0.06)] {
         let settings = Settings { filter, texel_budget: 0, lines: 64, ..Settings::default() };
+        let mut worst = 0.0_f32;
         for _ in 0..200 {
             let center = [0; 2].map(|_| random.within(0.0, 1.0));
             let [dx, dy] = [random.within(0.3, 0.6), random.within(0.3, 0.6)];
             let pixel = Pixel::new(center, [dx, 0.0], [0.0, dy], [0.0; 2]);
             let [a, b, c] = [&plain, &skinny, &fat].map(|surface| filtered(surface, &pixel, &settings));
-            for other in [b, c] {
-                let error = (0..3).map(|i| (a[i] - other[i]).abs()).fold(0.0, f32::max);
-                assert!(error < 0.06, "{filter:?}: {a:?} became {other:?}");
-            }
+            let errors = [b, c].iter().flat_map(|other| (0..3).map(|i| (a[i] - other[i]).abs())).collect::<Vec<_>>();
+            worst = errors.into_iter().fold(worst, f32::max);
         }
+        println!("{filter:?}: {worst}");
+        assert!(worst < most, "{filter:?}: {worst} apart");
     }
 }
