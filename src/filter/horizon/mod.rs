@@ -14,10 +14,10 @@
 //! visible part. (The floating horizon: a hidden-surface algorithm for functions of two variables, here run inside a
 //! texture footprint; the weight is exact where the classic algorithm draws lines.)
 //!
-//! Neighbouring pixels see the same texels, so a *patch* of them is swept once ([`sweep`]): rows across the longer axis of
+//! Neighbouring pixels see the same texels, so a *patch* of them is swept once (`sweep`): rows across the longer axis of
 //! the displacement, on a transposed copy of the texels where that is u, and eight lines as lanes. What a line sees is
-//! kept bin by bin, and each pixel weighs the bins by its own Gaussian ([`kernel`]). Where a patch lies and how its
-//! lines run says [`frame`]; pixels that no patch can hold well are split into smaller ones, at last into single pixels.
+//! kept bin by bin, and each pixel weighs the bins by its own Gaussian (`kernel`). Where a patch lies and how its
+//! lines run says `frame`; pixels that no patch can hold well are split into smaller ones, at last into single pixels.
 
 mod frame;
 mod kernel;
