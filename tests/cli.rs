@@ -236,6 +236,76 @@ fn version_names_the_instruction_set() {
 }
 
 #[test]
+fn shells_and_readers_are_served() {
+    let folder = Folder::new();
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = text(&folder.succeeds(&format!("completions {shell}")).stdout);
+        assert!(["basrelief", "turntable", "compare", "golden"].iter().all(|word| script.contains(word)), "{shell}");
+    }
+    let page = text(&folder.succeeds("man").stdout);
+    assert!(
+        [".TH basrelief 1", ".SH OPTIONS", "far\\-field\\-mib", "130"].iter().all(|word| page.contains(word)),
+        "{page}"
+    );
+    fs::create_dir(folder.path("man1")).unwrap();
+    folder.succeeds("man -o man1");
+    for name in ["basrelief", "basrelief-render", "basrelief-compare", "basrelief-join"] {
+        let page = fs::read_to_string(folder.path(&format!("man1/{name}.1"))).unwrap();
+        assert!(page.contains(&format!(".TH {name} 1")), "{page}");
+    }
+    folder.refuses("man -o missing", &["missing"]);
+}
+
+#[test]
+fn help_says_what_exit_codes_mean() {
+    let help = text(&Folder::new().succeeds("--help").stdout);
+    assert!(help.contains("Exit codes:") && help.contains("NO_COLOR"), "{help}");
+    assert!(help.lines().all(|line| line.chars().count() <= 120), "wide terminals get no wider lines");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn no_color_is_heeded_on_terminals() {
+    // script(1) gives the program a terminal.
+    let help = |no_color: Option<&str>| {
+        let mut command = Command::new("script");
+        command.args(["-qec", concat!(env!("CARGO_BIN_EXE_basrelief"), " --help"), "/dev/null"]).env("TERM", "xterm");
+        command.env_remove("NO_COLOR").envs(no_color.map(|value| ("NO_COLOR", value)));
+        command.stdin(std::process::Stdio::null()).output().map(|output| text(&output.stdout))
+    };
+    let Ok(styled) = help(None) else { return eprintln!("skipped: no script(1)") };
+    assert!(styled.contains("\u{1b}["), "{styled}");
+    let plain = help(Some("1")).unwrap();
+    assert!(plain.contains("--turntable") && !plain.contains('\u{1b}'), "{plain}");
+}
+
+#[test]
+fn reader_that_has_seen_enough_is_no_error() {
+    let folder = Folder::new();
+    for line in ["--help", "completions bash", "man"] {
+        let mut child = folder
+            .command(line)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success() && output.stderr.is_empty(), "{line}: {}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn float_output_is_linear() {
+    let folder = Folder::new();
+    folder.succeeds("quad.obj --size 8x8 --eye -1,2,9 --target 0,5,20 --background #808080 -q -o a.exr");
+    let image = image::open(folder.path("a.exr")).unwrap();
+    assert_eq!(image.color(), image::ColorType::Rgb32F);
+    let linear = basrelief::texture::linear_from_srgb8(0x80);
+    assert!(image.into_rgb32f().pixels().all(|pixel| pixel.0 == [linear; 3]));
+}
+
+#[test]
 fn equal_images_compare_as_equal() {
     let folder = Folder::new();
     folder.put_image("a.png", [0.5, 0.25, 0.125, 1.0]);

@@ -103,7 +103,8 @@ impl Piece {
             (png::ColorType::Rgba, png::BitDepth::Eight, false) => true,
             _ => return refuse("is not a part that --region drew: its pixels are stored in another way"),
         };
-        match Part::of_png(info) {
+        let chunks = info.uncompressed_latin1_text.iter().map(|chunk| (&*chunk.keyword, &*chunk.text));
+        match Part::of_chunks([info.width, info.height], chunks) {
             Some(part) => Ok(Self { path: path.into(), part, has_opacity }),
             None => refuse("is not a part that --region drew: it does not say where it lies"),
         }

@@ -70,7 +70,7 @@ pub(super) fn text(scene: &SceneOptions, settings: &Settings, camera: &Camera, p
     });
     let mut table = file.table()?;
     table.retain(|_, value| value.as_table().is_none_or(|table| !table.is_empty()));
-    table.values_mut().for_each(shorten);
+    table.iter_mut().for_each(|(_, value)| shorten(value));
     let text = toml::to_string(&table).map_err(|e| format!("{}: {e}", path.display()))?;
     Ok(format!(
         "# basrelief {}: `basrelief FILE.toml -o picture.png` draws it again.\n{text}",

@@ -23,12 +23,16 @@ pub struct Part {
 }
 
 impl Part {
-    /// What a PNG file says of itself; `None` where it says nothing, or nothing that fits its size.
+    /// What the text chunks of a PNG file, keywords and texts, say of it; `None` where they say nothing, or nothing that
+    /// fits its size.
     #[must_use]
-    pub fn of_png(info: &png::Info) -> Option<Self> {
-        let text = info.uncompressed_latin1_text.iter().find(|chunk| chunk.keyword == KEYWORD)?;
-        let part: Self = text.text.parse().ok()?;
-        ((part.region.width, part.region.height) == (info.width, info.height)).then_some(part)
+    pub fn of_chunks<'a>(
+        [width, height]: [u32; 2],
+        chunks: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Option<Self> {
+        let (_, text) = chunks.into_iter().find(|(keyword, _)| *keyword == KEYWORD)?;
+        let part: Self = text.parse().ok()?;
+        ((part.region.width, part.region.height) == (width, height)).then_some(part)
     }
 }
 
@@ -111,12 +115,15 @@ mod tests {
         let part = Part { region: Region { x: 2, y: 3, width: 301, height: 97 }, whole: [1000, 500] };
         for (has_opacity, part) in [(false, None), (true, Some(part))] {
             let head = PngHead { width: 301, height: 97, has_opacity, part };
-            let bytes: Vec<u8> =
-                (0..301 * 97 * if has_opacity { 4 } else { 3_u32 }).map(|i| (i * i / 5_000 + i / 300) as u8).collect();
+            let bytes: Vec<u8> = (0..301 * 97 * if has_opacity { 4 } else { 3_u32 })
+                .map(|i| (i.wrapping_mul(i) / 5_000 + i / 300) as u8)
+                .collect();
             let whole = encode(&head, &bytes, 97).unwrap();
             assert!([1, 8, 50].iter().all(|&rows| encode(&head, &bytes, rows).unwrap() == whole));
             let mut reader = png::Decoder::new(std::io::Cursor::new(&whole)).read_info().unwrap();
-            assert_eq!(Part::of_png(reader.info()), part);
+            let info = reader.info();
+            let chunks = info.uncompressed_latin1_text.iter().map(|chunk| (&*chunk.keyword, &*chunk.text));
+            assert_eq!(Part::of_chunks([info.width, info.height], chunks), part);
             let mut read = vec![0; bytes.len()];
             reader.next_frame(&mut read).unwrap();
             assert!(read == bytes);
