@@ -34,6 +34,20 @@
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
+//! A frame in a buffer of one's own:
+//!
+//! ```
+//! use basrelief::{Settings, render, scene};
+//!
+//! let mut buffer = vec![0_u8; 160 * 90 * 4];
+//! let frame = render(scene::builtin(), Settings { width: 160, height: 90, ..Settings::default() })?;
+//! for (pixel, rgba) in buffer.chunks_exact_mut(4).zip(frame.to_rgba8()) {
+//!     pixel.copy_from_slice(&rgba);
+//! }
+//! # assert_eq!(buffer[3], 255);
+//! # Ok::<(), basrelief::Error>(())
+//! ```
+//!
 //! Several frames of one scene, here of the built-in one:
 //!
 //! ```
@@ -52,7 +66,8 @@
 //! ```
 //!
 //! [`scene::load`] reads OBJ files, [`scene::builtin`] makes the scene of the README, [`Renderer`] keeps tables and buffers
-//! between frames, and [`metrics::compare`] measures two pictures.
+//! between frames, [`metrics::compare`] measures two pictures, [`golden::check`] is for tests that
+//! compare with an image in their repository, and [`seen_color`] is the filter alone, on derivatives of your own.
 //!
 //! # The way of a pixel, one direction only
 //!
@@ -73,6 +88,7 @@
 //! | `render` | a whole frame: one numbered step a stage |
 //! | [`frame`] | linear pixels, sRGB bytes, image files |
 //! | [`metrics`] | PSNR, SSIM, largest error, heat map |
+//! | [`golden`] | pictures that tests must draw again |
 //! | `reference` | the scalar oracle that tests compare with |
 //! | [`invariants`] | what holds of the filters for any input |
 //! | `simd` | lane types; the only file that names `wide` |
@@ -85,6 +101,7 @@
 #![forbid(unsafe_code)]
 
 pub mod frame;
+pub mod golden;
 pub mod invariants;
 pub mod metrics;
 pub mod scene;
@@ -110,8 +127,9 @@ pub mod shade;
 pub mod simd;
 
 pub use error::{Error, Result};
+pub use filter::{Footprint, seen_color};
 pub use frame::Frame;
 pub use render::{Renderer, Stats, render};
 pub use scene::{Camera, Light, Material, Mesh, Scene};
-pub use settings::{Derivatives, Filter, Formulas, Lighting, Settings, Visibility};
+pub use settings::{Derivatives, Filter, Formulas, Lighting, Region, Settings, Visibility};
 pub use simd::LEVEL as SIMD_LEVEL;

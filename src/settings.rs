@@ -61,13 +61,38 @@ pub enum Lighting {
     Lit,
 }
 
+/// A rectangle of a frame's pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Region {
+    /// First column, 0 at the left.
+    pub x: u32,
+    /// First row, 0 at the top.
+    pub y: u32,
+    /// Columns, 1 or more.
+    pub width: u32,
+    /// Rows, 1 or more.
+    pub height: u32,
+}
+
+impl Region {
+    /// Whether it lies within a frame of `width` by `height` pixels and holds a pixel.
+    #[must_use]
+    pub fn is_within(&self, width: u32, height: u32) -> bool {
+        let fits = |first: u32, num: u32, end: u32| num > 0 && first.checked_add(num).is_some_and(|last| last <= end);
+        fits(self.x, self.width, width) && fits(self.y, self.height, height)
+    }
+}
+
 /// How a frame is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Width of the frame in pixels, 1 to 32768; width times height is at most 2^28. Default: 1280.
+    /// Width of the frame in pixels, 1 to 32768; width times height of what is drawn is at most 2^28. Default: 1280.
     pub width: u32,
     /// Height of the frame in pixels, 1 to 32768. Default: 720.
     pub height: u32,
+    /// The part of the frame that is drawn: the picture has its size, and the bytes that this part has in the whole
+    /// frame. Default: `None`, all of it.
+    pub region: Option<Region>,
     /// Which texels make up a pixel's colour. Default: [`Filter::Horizon`].
     pub filter: Filter,
     /// How [`Filter::Visible`] finds hidden texels. Default: [`Visibility::Exact`].
@@ -114,6 +139,7 @@ impl Default for Settings {
         Self {
             width: 1280,
             height: 720,
+            region: None,
             filter: Filter::Horizon,
             visibility: Visibility::Exact,
             parallax: true,
@@ -135,6 +161,12 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// What is drawn: the region, or the whole frame.
+    #[must_use]
+    pub fn drawn(&self) -> Region {
+        self.region.unwrap_or(Region { x: 0, y: 0, width: self.width, height: self.height })
+    }
+
     /// Checks every field against its range.
     ///
     /// # Errors
@@ -149,11 +181,13 @@ impl Settings {
         };
         within("width", self.width, 1, 32768)?;
         within("height", self.height, 1, 32768)?;
-        if u64::from(self.width) * u64::from(self.height) > MAX_PIXELS {
-            return Err(Error::setting(
-                "width",
-                format!("{} x {} is more than {MAX_PIXELS} pixels", self.width, self.height),
-            ));
+        if let Some(Region { x, y, width, height }) = self.region.filter(|r| !r.is_within(self.width, self.height)) {
+            let reason = format!("{x},{y},{width},{height} is not a part of {}x{} pixels", self.width, self.height);
+            return Err(Error::setting("region", reason));
+        }
+        let Region { width, height, .. } = self.drawn();
+        if u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return Err(Error::setting("width", format!("{width} x {height} is more than {MAX_PIXELS} pixels")));
         }
         within("samples", self.samples, 1, 65536)?;
         within("lines", self.lines, 2, 64)?;

@@ -1,86 +1,18 @@
 //! The program as its users meet it: exit codes, messages, files.
 
+#[path = "common/program.rs"]
+mod program;
+
 use basrelief::Frame;
+use program::{Folder, json, text};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use tempfile::TempDir;
-
-const QUAD: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
-
-/// A folder with `quad.obj`, in which the program runs.
-struct Folder(TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        let folder = Self(tempfile::tempdir().unwrap());
-        folder.put("quad.obj", QUAD);
-        folder
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn put(&self, name: &str, content: impl AsRef<[u8]>) {
-        fs::write(self.path(name), content).unwrap();
-    }
-
-    fn put_image(&self, name: &str, color: [f32; 4]) {
-        Frame::filled(16, 12, color).save(self.path(name)).unwrap();
-    }
-
-    fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_basrelief"));
-        command.args(line.split_whitespace()).current_dir(self.0.path());
-        command
-    }
-
-    fn run(&self, line: &str) -> Output {
-        self.command(line).output().unwrap()
-    }
-
-    /// Names and contents of all files.
-    fn contents(&self) -> Vec<(PathBuf, Vec<u8>)> {
-        let paths = fs::read_dir(self.0.path()).unwrap().map(|entry| entry.unwrap().path());
-        let mut files: Vec<_> =
-            paths.filter(|path| path.is_file()).map(|p| (p.clone(), fs::read(&p).unwrap())).collect();
-        files.sort();
-        files
-    }
-
-    /// Runs the program and checks that it ends well.
-    fn succeeds(&self, line: &str) -> Output {
-        let output = self.run(line);
-        assert!(output.status.success(), "{line}: {}", text(&output.stderr));
-        output
-    }
-
-    /// Checks that the program refuses: exit code 2, one line with `words` on stderr, nothing printed or written.
-    fn refuses(&self, line: &str, words: &[&str]) {
-        let before = self.contents();
-        let output = self.run(line);
-        let message = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
-        assert!(message.starts_with("basrelief: ") && message.lines().count() == 1, "{line}: {message}");
-        assert!(words.iter().all(|word| message.contains(word)), "{line}: {message} lacks one of {words:?}");
-        assert!(output.stdout.is_empty(), "{line} prints");
-        assert!(self.contents() == before, "{line} writes");
-    }
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
+use std::path::Path;
+use std::process::Command;
 
 /// The names of all files, sorted.
 #[cfg(unix)]
 fn names(folder: &Folder) -> Vec<std::ffi::OsString> {
     folder.contents().into_iter().map(|(path, _)| path.file_name().unwrap().to_owned()).collect()
-}
-
-fn json(bytes: &[u8]) -> serde_json::Value {
-    serde_json::from_slice(bytes).unwrap()
 }
 
 fn size_of_image(path: &Path) -> (u32, u32) {
@@ -125,7 +57,10 @@ fn bad_options_are_refused() {
         ("--size 0x0", "--size"),
         ("--size 0x36", "--size"),
         ("--size 32769x1", "--size"),
-        ("--size 32768x32768", "--size"),
+        ("--size 8x8 --region 0,0,9,1", "--region"),
+        ("--region 1,2,3", "--region"),
+        ("--diffuse -1", "--diffuse"),
+        ("--shininess 1e5", "--shininess"),
         ("--size 64", "--size"),
         ("--size -64x36", "--size"),
         ("--size 99999999999x1", "--size"),
@@ -163,7 +98,7 @@ fn bad_options_are_refused() {
     ] {
         folder.refuses(&format!("quad.obj -o a.png {line}"), &[word]);
     }
-    folder.refuses("--height a.png -o a.png", &["SCENE.obj"]);
+    folder.refuses("--height a.png -o a.png", &["SCENE"]);
     folder.refuses("compare", &["<A>"]);
 }
 
@@ -269,10 +204,10 @@ fn every_option_is_accepted() {
         "quad.obj -o a.png --size 8x8 --filter visible --visible resolved --parallax on --derivatives flat --formulas printed \
          --texel-budget 64 --max-anisotropy 8 --samples 2 --lines 8 --far-field off --far-field-mib 1 --lighting lit --cull \
          --msaa 1 --tile 8 --albedo map.png --height map.png --normal map.png --height-sense white-deep --relief-depth 0.1 \
-         --normal-y down --wrap mirror --allow-outside \
+         --normal-y down --wrap mirror --allow-outside --diffuse 0.5 --specular 0.1,0.2,0.3 --shininess 9 --region 0,1,7,6 \
          --max-image-side 64 --max-image-mib 64 --max-triangles 9 --max-textures 9 --eye -1,-1,3 --target -0.1,0,0 --up 0,1,-0.1 --fov 40 --near 0.1 \
          --sun -1,1,1 --sun 1,1,1,0.5,0.5,0.5 --point-light -1,0,2 --ambient 0.1,0.1,0.2 --background skyblue --threads 1 \
-         --quiet --repeat 2 --stats stats.json",
+         --quiet --repeat 2 --stats stats.json --save-scene kept.toml --json",
     );
 }
 
@@ -298,6 +233,76 @@ fn version_names_the_instruction_set() {
     let output = Folder::new().succeeds("--version");
     let said = text(&output.stdout);
     assert!(said.contains(env!("CARGO_PKG_VERSION")) && said.contains(basrelief::SIMD_LEVEL), "{said}");
+}
+
+#[test]
+fn shells_and_readers_are_served() {
+    let folder = Folder::new();
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = text(&folder.succeeds(&format!("completions {shell}")).stdout);
+        assert!(["basrelief", "turntable", "compare", "golden"].iter().all(|word| script.contains(word)), "{shell}");
+    }
+    let page = text(&folder.succeeds("man").stdout);
+    assert!(
+        [".TH basrelief 1", ".SH OPTIONS", "far\\-field\\-mib", "130"].iter().all(|word| page.contains(word)),
+        "{page}"
+    );
+    fs::create_dir(folder.path("man1")).unwrap();
+    folder.succeeds("man -o man1");
+    for name in ["basrelief", "basrelief-render", "basrelief-compare", "basrelief-join"] {
+        let page = fs::read_to_string(folder.path(&format!("man1/{name}.1"))).unwrap();
+        assert!(page.contains(&format!(".TH {name} 1")), "{page}");
+    }
+    folder.refuses("man -o missing", &["missing"]);
+}
+
+#[test]
+fn help_says_what_exit_codes_mean() {
+    let help = text(&Folder::new().succeeds("--help").stdout);
+    assert!(help.contains("Exit codes:") && help.contains("NO_COLOR"), "{help}");
+    assert!(help.lines().all(|line| line.chars().count() <= 120), "wide terminals get no wider lines");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn no_color_is_heeded_on_terminals() {
+    // script(1) gives the program a terminal.
+    let help = |no_color: Option<&str>| {
+        let mut command = Command::new("script");
+        command.args(["-qec", concat!(env!("CARGO_BIN_EXE_basrelief"), " --help"), "/dev/null"]).env("TERM", "xterm");
+        command.env_remove("NO_COLOR").envs(no_color.map(|value| ("NO_COLOR", value)));
+        command.stdin(std::process::Stdio::null()).output().map(|output| text(&output.stdout))
+    };
+    let Ok(styled) = help(None) else { return eprintln!("skipped: no script(1)") };
+    assert!(styled.contains("\u{1b}["), "{styled}");
+    let plain = help(Some("1")).unwrap();
+    assert!(plain.contains("--turntable") && !plain.contains('\u{1b}'), "{plain}");
+}
+
+#[test]
+fn reader_that_has_seen_enough_is_no_error() {
+    let folder = Folder::new();
+    for line in ["--help", "completions bash", "man"] {
+        let mut child = folder
+            .command(line)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success() && output.stderr.is_empty(), "{line}: {}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn float_output_is_linear() {
+    let folder = Folder::new();
+    folder.succeeds("quad.obj --size 8x8 --eye -1,2,9 --target 0,5,20 --background #808080 -q -o a.exr");
+    let image = image::open(folder.path("a.exr")).unwrap();
+    assert_eq!(image.color(), image::ColorType::Rgb32F);
+    let linear = basrelief::texture::linear_from_srgb8(0x80);
+    assert!(image.into_rgb32f().pixels().all(|pixel| pixel.0 == [linear; 3]));
 }
 
 #[test]

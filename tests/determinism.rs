@@ -7,7 +7,8 @@ mod common;
 
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
 use basrelief::{
-    Derivatives, Filter, Formulas, Frame, Light, Lighting, Material, Mesh, Renderer, Scene, Settings, Visibility,
+    Derivatives, Filter, Formulas, Frame, Light, Lighting, Material, Mesh, Region, Renderer, Scene, Settings,
+    Visibility,
 };
 use common::{cobbles, floor_scene};
 use glam::{Vec2, Vec3};
@@ -143,5 +144,34 @@ fn frames_of_any_size_do_not_depend_on_threads_and_tiles() {
             let other = pool.install(|| draw(&case(8)));
             assert!(expected == other, "{filter:?} at {width} x {height}");
         }
+    }
+}
+
+#[test]
+fn regions_have_the_bytes_of_their_part_of_the_frame() {
+    let regions =
+        [[0, 0, 45, 37], [0, 0, 1, 1], [44, 36, 1, 1], [7, 3, 11, 9], [8, 8, 8, 8], [13, 30, 32, 7], [1, 0, 3, 37]];
+    for (name, wrap, size, settings) in cases() {
+        let mut renderer = Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene");
+        let whole = renderer.render();
+        for (i, [x, y, width, height]) in regions.into_iter().enumerate() {
+            let region = Some(Region { x, y, width, height });
+            let tile_size = [8, 16, 32][i % 3];
+            renderer.set_settings(Settings { region, tile_size, ..settings.clone() }).expect("valid settings");
+            let mut expected = whole.clone();
+            expected.crop(Region { x, y, width, height });
+            assert!(renderer.render() == expected, "{name}: {region:?}");
+        }
+    }
+}
+
+#[test]
+fn regions_outside_the_frame_are_refused() {
+    for [x, y, width, height] in
+        [[0, 0, 46, 1], [45, 0, 1, 1], [0, 30, 1, 8], [3, 3, 0, 1], [1, 1, 1, 0], [u32::MAX, 0, 2, 1]]
+    {
+        let region = Some(Region { x, y, width, height });
+        let error = Settings { region, ..small(Filter::Nearest) }.validate().expect_err("refused").to_string();
+        assert!(error.starts_with("region: "), "{error}");
     }
 }

@@ -1,7 +1,7 @@
 //! Loading: what is read, how it is read, and what is refused with which words.
 
 use basrelief::Error;
-use basrelief::scene::{HeightSense, LoadOptions, Loaded, NormalY, load, load_obj_bytes};
+use basrelief::scene::{HeightSense, LoadOptions, Loaded, MaterialOptions, NormalY, load, load_obj_bytes};
 use basrelief::texture::{Surface, Wrap};
 use glam::{Vec2, Vec3};
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Rgb, Rgb32FImage, RgbImage, Rgba, RgbaImage};
@@ -222,7 +222,7 @@ fn norm_and_map_kn_are_normal_maps_with_green_up_or_down() {
         files.options.keep_normals = true;
         files.image("n.png", one(128, 255, 128));
         let up = format!("{:?}", files.surface().levels[0]);
-        files.options.normal_y = NormalY::Down;
+        files.options.all.normal_y = Some(NormalY::Down);
         assert_ne!(up, format!("{:?}", files.surface().levels[0]), "{line}");
         files.options.keep_normals = false;
         assert!(files.load().scene.materials[0].surface.is_none(), "nothing else is in the material");
@@ -234,9 +234,9 @@ fn bm_is_the_depth_unless_the_caller_says_another() {
     let mut files = Files::quad("disp h.png -bm 0.1");
     files.image("h.png", gray(&[0, 255]));
     assert_eq!(files.surface().relief_depth, 0.1);
-    files.options.relief_depth = Some(0.02);
+    files.options.all.relief_depth = Some(0.02);
     assert_eq!(files.surface().relief_depth, 0.02);
-    files.options.relief_depth = Some(f32::NAN);
+    files.options.all.relief_depth = Some(f32::NAN);
     assert!(files.refusal().contains("relief_depth"));
 }
 
@@ -251,7 +251,7 @@ fn mm_maps_the_range_and_the_sense_turns_it() {
     let mut files = Files::quad("disp -mm 0.2 0.6 h.png");
     files.image("h.png", gray(&[0, 255]));
     assert_near(&files.heights(), &[13107, 52428]);
-    files.options.height_sense = HeightSense::WhiteDeep;
+    files.options.all.height_sense = Some(HeightSense::WhiteDeep);
     assert_near(&files.heights(), &[52428, 13107]);
 }
 
@@ -269,9 +269,9 @@ fn clamp_and_the_wrap_option() {
     let mut files = Files::quad("map_Kd -clamp on a.png");
     files.image("a.png", one(1, 2, 3));
     assert_eq!(files.surface().wrap, Wrap::Clamp);
-    files.options.wrap = Some(Wrap::Mirror);
+    files.options.all.wrap = Some(Wrap::Mirror);
     assert_eq!(files.surface().wrap, Wrap::Mirror);
-    files.options.wrap = None;
+    files.options.all.wrap = None;
     files.write("s.mtl", "newmtl stone\nmap_Kd -clamp off a.png\n");
     assert_eq!(files.surface().wrap, Wrap::Repeat);
 }
@@ -304,14 +304,14 @@ fn files_that_the_caller_names_replace_the_materials_own() {
     let height = outside.path().join("height.png");
     gray(&[0, 255]).save(&height).expect("saved");
     let mut files = Files::quad("map_Kd gone.png\ndisp gone.png");
-    files.options.albedo = Some(height.clone());
-    files.options.height = Some(height.clone());
-    files.options.normal = Some(height);
+    files.options.all.albedo = Some(height.clone());
+    files.options.all.height = Some(height.clone());
+    files.options.all.normal = Some(height);
     assert_eq!(files.heights(), [0, 65535]);
     assert!(files.load().warnings.is_empty());
     files.write("s.obj", QUAD.replace("mtllib s.mtl", "").replace("usemtl stone", ""));
     assert_eq!(files.heights(), [0, 65535], "a mesh without material gets one");
-    files.options.height = Some(files.path("none.png"));
+    files.options.all.height = Some(files.path("none.png"));
     assert_eq!(files.refusal(), "none.png: no such file");
 }
 
@@ -520,7 +520,8 @@ fn links_out_of_the_folder_devices_and_pipes_are_refused() {
     assert_eq!(zero, "/dev/zero: not a regular file");
     let made = std::process::Command::new("mkfifo").arg(files.path("pipe")).status().is_ok_and(|s| s.success());
     if made {
-        let options = LoadOptions { albedo: Some(files.path("pipe")), ..LoadOptions::default() };
+        let all = MaterialOptions { albedo: Some(files.path("pipe")), ..MaterialOptions::default() };
+        let options = LoadOptions { all, ..LoadOptions::default() };
         files.write("scene/s.obj", QUAD);
         let text = load(&files.path("scene/s.obj"), &options).expect_err("refused").to_string();
         assert!(text.contains("not a regular file"), "{text}");

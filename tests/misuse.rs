@@ -2,8 +2,8 @@
 
 use basrelief::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps, Wrap};
 use basrelief::{
-    Camera, Derivatives, Error, Filter, Formulas, Frame, Light, Lighting, Material, Mesh, Renderer, Scene, Settings,
-    Visibility, metrics,
+    Camera, Derivatives, Error, Filter, Formulas, Frame, Light, Lighting, Material, Mesh, Region, Renderer, Scene,
+    Settings, Visibility, metrics,
 };
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
@@ -70,15 +70,18 @@ fn settings() -> impl Strategy<Value = Settings> {
     let sizes = (side(), side(), count(), count(), count(), [limit(), limit()]);
     let grids = (pick(&[1, 1, 4, 8, 0, 2, u32::MAX]), pick(&[8, 16, 32, 64, 256, 32, 8, 0, 7, 512, u32::MAX]));
     let texels = prop_oneof![0_u32..300, any::<u32>()];
-    (modes, sizes, grids, texels).prop_map(
+    let region = prop_oneof![3 => Just(None), 1 => [side(), side(), side(), side()].prop_map(Some)];
+    (modes, sizes, grids, texels, region).prop_map(
         |(
             (filter, visibility, derivatives, formulas, lighting, [parallax, far_field, cull_back_faces]),
             (width, height, samples, lines, far_field_mib, [max_anisotropy, max_stretch]),
             (msaa, tile_size),
             texel_budget,
+            region,
         )| Settings {
             width,
             height,
+            region: region.map(|[x, y, width, height]| Region { x, y, width, height }),
             filter,
             visibility,
             parallax,

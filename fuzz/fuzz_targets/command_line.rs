@@ -76,5 +76,5 @@ libfuzzer_sys::fuzz_target!(|words: Vec<Word>| {
     let mut scene: Scene = floor();
     options.scene.set(&mut scene);
     let (width, height, samples) = (settings.width.min(16), settings.height.min(12), settings.samples.min(4));
-    hold(frame_is_finite(scene, Settings { width, height, samples, ..settings }));
+    hold(frame_is_finite(scene, Settings { width, height, samples, region: None, ..settings }));
 });

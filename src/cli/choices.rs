@@ -5,6 +5,9 @@ use basrelief::texture::Wrap;
 use basrelief::{Derivatives, Filter, Formulas, Lighting, Visibility};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serializer};
+
 /// A word, what it stands for, and its help.
 pub(crate) type Choice<T> = (&'static str, T, &'static str);
 
@@ -58,6 +61,43 @@ pub(crate) const WRAPS: &[Choice<Wrap>] = &[
 ];
 
 pub(crate) const ON_OFF: &[Choice<bool>] = &[("on", true, ""), ("off", false, "")];
+
+/// What is one of a few words wherever it is given.
+pub(crate) trait Words: Copy + PartialEq + Send + Sync + 'static {
+    const CHOICES: &'static [Choice<Self>];
+}
+
+/// Names the words of each type.
+macro_rules! words {
+    ($($type:ty: $choices:expr;)*) => { $(impl Words for $type { const CHOICES: &'static [Choice<Self>] = $choices; })* };
+}
+
+words! {
+    Filter: FILTERS;
+    Visibility: VISIBILITIES;
+    Derivatives: DERIVATIVES;
+    Formulas: FORMULAS;
+    Lighting: LIGHTING;
+    HeightSense: HEIGHT_SENSES;
+    NormalY: NORMAL_YS;
+    Wrap: WRAPS;
+}
+
+/// Writes the word of a value, for `serde(with = "choices")`.
+pub(crate) fn serialize<T: Words, S: Serializer>(value: &Option<T>, to: S) -> Result<S::Ok, S::Error> {
+    match value {
+        Some(value) => to.serialize_some(word(T::CHOICES, value)),
+        None => to.serialize_none(),
+    }
+}
+
+/// Reads the value of a word, for `serde(with = "choices")`.
+pub(crate) fn deserialize<'de, T: Words, D: Deserializer<'de>>(from: D) -> Result<Option<T>, D::Error> {
+    let given = String::deserialize(from)?;
+    let known = || T::CHOICES.iter().map(|(word, ..)| *word).collect::<Vec<_>>().join(", ");
+    let found = T::CHOICES.iter().find(|(word, ..)| *word == given).map(|&(_, value, _)| value);
+    found.map(Some).ok_or_else(|| D::Error::custom(format!("`{given}` is not one of {}", known())))
+}
 
 /// A parser of one of `choices`.
 pub(crate) fn one_of<T>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T>

@@ -1,10 +1,11 @@
 //! `basrelief compare`: how far two images are apart.
 
 use super::args::CompareOptions;
-use super::{Refusal, output, settings};
+use super::{Refusal, golden, output, settings};
 use basrelief::Error;
 use basrelief::metrics::{self, Difference, Picture};
 use serde::Serialize;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// One JSON object. Errors are 0 to 1; an infinite ratio is null.
@@ -25,12 +26,17 @@ struct Report {
 
 /// Compares the images that the options name.
 pub(super) fn run(options: &CompareOptions) -> Result<ExitCode, Refusal> {
+    let paths = match (&options.golden, &options.b) {
+        (Some(folder), _) => return golden::run(options, folder),
+        (None, Some(b)) => [&options.a, b],
+        (None, None) => return Err("B is missing".into()),
+    };
     let format = options.heatmap.as_deref().map(output::image_format).transpose()?;
     let open = |path| Picture::open_within(path, options.max_pixels).map_err(|e| settings::refusal(&e));
-    let (a, b) = (open(&options.a)?, open(&options.b)?);
-    let difference = metrics::compare(&a, &b).map_err(|e| refusal(options, &e))?;
+    let (a, b) = (open(paths[0])?, open(paths[1])?);
+    let difference = metrics::compare(&a, &b).map_err(|e| refusal(paths, &e))?;
     if let (Some(path), Some(format)) = (&options.heatmap, format) {
-        let map = metrics::heat_map(&a, &b, options.heatmap_max).map_err(|e| refusal(options, &e))?;
+        let map = metrics::heat_map(&a, &b, options.heatmap_max).map_err(|e| refusal(paths, &e))?;
         output::write(path, &map.encode(format).map_err(|e| e.to_string())?)?;
     }
     let report = Report::new(&a, &difference);
@@ -39,12 +45,12 @@ pub(super) fn run(options: &CompareOptions) -> Result<ExitCode, Refusal> {
     Ok(verdict(difference.psnr_db, options.min_psnr))
 }
 
-fn refusal(options: &CompareOptions, error: &Error) -> Refusal {
+fn refusal([a, b]: [&PathBuf; 2], error: &Error) -> Refusal {
     let reason = match error {
         Error::Scene { reason, .. } => reason.clone(),
         _ => error.to_string(),
     };
-    format!("{} and {}: {reason}", options.a.display(), options.b.display())
+    format!("{} and {}: {reason}", a.display(), b.display())
 }
 
 fn verdict(psnr_db: f64, bound: Option<f64>) -> ExitCode {

@@ -3,13 +3,22 @@
 //! Exit codes: 0 done, 1 a comparison below its bound, 2 refused with one line on stderr, 130 interrupted.
 
 mod args;
+mod camera_path;
 mod choices;
 mod compare;
+mod file_values;
+mod frames;
+mod golden;
+mod join;
+mod manual;
 mod output;
+mod picture;
 mod progress;
 mod render;
 mod scene;
+mod scene_file;
 mod settings;
+mod shard;
 mod stats;
 mod values;
 mod version;
@@ -29,10 +38,13 @@ pub(crate) fn run() -> ExitCode {
         Err(Ending::Refused(text)) => return refuse(&text),
         Err(Ending::Help(help)) => return print_help(&help),
     };
-    output::finish_writing_on_interrupt();
+    output::clean_up_on_interrupt();
     let outcome = match cli.command.unwrap_or(Command::Render(cli.render)) {
-        Command::Render(options) => render::run(&options),
+        Command::Render(options) => render::run(options),
         Command::Compare(options) => compare::run(&options),
+        Command::Join(options) => join::run(&options),
+        Command::Completions { shell } => manual::completions(shell),
+        Command::Man { output } => manual::man(output.as_deref()),
     };
     outcome.unwrap_or_else(|refusal| refuse(&refusal))
 }

@@ -1,18 +1,20 @@
-//! Where results go: files written whole, or stdout.
+//! Where results go: files that appear whole, or stdout.
 
 use super::Refusal;
-use basrelief::frame::{Format, check_writable, write_whole};
-use std::io::Write;
-use std::path::Path;
+use basrelief::frame::{Format, WholeFile, check_writable};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Held while a file is written.
-static WRITING: Mutex<()> = Mutex::new(());
+/// The temporary file of what is being written. Held while such a file is made or gets its name.
+static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-/// On an interrupt, lets a write in progress finish, so that no temporary file stays behind, and ends the program.
-pub(super) fn finish_writing_on_interrupt() {
+/// On an interrupt, removes the file that is being written, so that nothing half-written stays behind, and ends the program.
+pub(super) fn clean_up_on_interrupt() {
     let end = || {
-        let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+        let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+        // It may have no name any more.
+        let _ = unfinished.as_ref().map(std::fs::remove_file);
         std::process::exit(130);
     };
     // Without a handler an interrupt ends the program all the same.
@@ -40,21 +42,39 @@ pub(super) fn check(path: &Path) -> Result<(), Refusal> {
         return Ok(());
     }
     // The check, too, makes a temporary file.
-    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
+    let _unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     check_writable(path).map_err(|e| e.to_string())
 }
 
 /// Writes a whole file, or stdout.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Refusal> {
-    if is_stdout(path) {
-        return print(bytes);
-    }
-    let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
-    write_whole(path, bytes).map_err(|e| e.to_string())
+    let name = if is_stdout(path) { "stdout".into() } else { path.display().to_string() };
+    write_by(path, |sink| sink.write_all(bytes).map_err(|e| format!("{name}: cannot be written: {e}")))
 }
 
-/// Writes to stdout.
-pub(super) fn print(bytes: &[u8]) -> Result<(), Refusal> {
-    let mut stdout = std::io::stdout().lock();
-    stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|e| format!("stdout: cannot be written: {e}"))
+/// Writes a whole file, or stdout, as `write` does to its sink.
+pub(super) fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<(), Refusal>) -> Result<(), Refusal> {
+    if is_stdout(path) {
+        let mut stdout = io::stdout().lock();
+        write(&mut stdout)?;
+        return stdout.flush().map_err(|e| format!("stdout: cannot be written: {e}"));
+    }
+    let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut file = WholeFile::create(path).map_err(|e| e.to_string())?;
+    *unfinished = file.temporary_path().map(Into::into);
+    drop(unfinished);
+    let written = write(&mut file);
+    let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+    *unfinished = None;
+    written?;
+    file.finish().map_err(|e| e.to_string())
+}
+
+/// Prints text to stdout. A pipe that is closed, as by `head`, has read what it wanted.
+pub(super) fn print(text: &[u8]) -> Result<(), Refusal> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(text).and_then(|()| stdout.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("stdout: cannot be written: {e}")),
+        _ => Ok(()),
+    }
 }

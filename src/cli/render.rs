@@ -1,42 +1,60 @@
-//! `basrelief [render]`: load, draw, write.
+//! `basrelief [render]`: load once, then draw and write picture after picture.
 
 use super::args::RenderOptions;
+use super::frames::Sequence;
+use super::picture::{self, Took, Way};
 use super::progress::Progress;
 use super::settings::refusal;
 use super::stats::Report;
-use super::{Refusal, output};
-use basrelief::{Frame, Lighting, Renderer, Settings, Stats};
+use super::{Refusal, output, scene_file};
+use basrelief::{Lighting, Renderer, Settings};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 /// Draws the scene that the options name.
-pub(super) fn run(options: &RenderOptions) -> Result<ExitCode, Refusal> {
+pub(super) fn run(mut options: RenderOptions) -> Result<ExitCode, Refusal> {
     // All that can be refused without work is refused before the work.
+    scene_file::read_into(&mut options.scene, &mut options.settings)?;
     let settings = options.settings.settings(options.scene.has_lights())?;
-    let format = output::image_format(&options.output)?;
-    check_stats(options)?;
+    let sequence = options.frames.sequence(options.output.as_deref())?;
+    let way = check(&options, &settings, &sequence)?;
     let pool = thread_pool(options.threads)?;
     let progress = Progress::new(options.quiet);
-    let (frame, report) = pool.install(|| draw(options, &settings, &progress))?;
-    progress.stage("writing");
-    let bytes = frame.encode(format).map_err(|e| refusal(&e))?;
-    output::write(&options.output, &bytes)?;
-    if let Some(path) = &options.stats {
-        output::write(path, &report.json()?)?;
+    sequence.remark.iter().for_each(|remark| progress.say(remark));
+    let mut pictures: Vec<(u32, PathBuf)> = sequence.pictures().collect();
+    let num_asked = pictures.len();
+    if options.frames.skip_existing {
+        pictures.retain(|(_, path)| !path.is_file());
     }
-    progress.say(&report.line());
-    if !output::is_stdout(&options.output) {
-        progress.say(&format!("wrote {}", options.output.display()));
+    let num_skipped = num_asked - pictures.len();
+    if num_skipped > 0 {
+        progress.say(&format!("{num_skipped} of {num_asked} pictures are there already"));
+    }
+    let job = Job { options: &options, settings, sequence, pictures, way, progress };
+    if !job.pictures.is_empty() || options.save_scene.is_some() {
+        pool.install(|| job.run())?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn check_stats(options: &RenderOptions) -> Result<(), Refusal> {
-    let Some(stats) = &options.stats else { return Ok(()) };
-    if *stats == options.output {
-        return Err(format!("--stats and --output are both {}", stats.display()));
+/// What can be written, and how.
+fn check(options: &RenderOptions, settings: &Settings, sequence: &Sequence) -> Result<Way, Refusal> {
+    let name = sequence.output();
+    if sequence.is_numbered() && options.repeat.is_some() {
+        return Err("--repeat: measures one picture, not many frames".into());
     }
-    output::check(stats)
+    if options.json && [Some(name), options.stats.as_deref()].into_iter().flatten().any(output::is_stdout) {
+        return Err("--json: stdout is taken by --output or --stats".into());
+    }
+    let others = [("--stats", &options.stats), ("--save-scene", &options.save_scene)];
+    for (option, path) in others.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))) {
+        if path == name {
+            return Err(format!("{option} and --output are both {}", path.display()));
+        }
+        output::check(path)?;
+    }
+    Way::of(settings, output::image_format(name)?, options.repeat.is_some())
 }
 
 /// A pool of `num` threads, or of as many as this process may use.
@@ -49,44 +67,97 @@ fn thread_pool(num: u32) -> Result<rayon::ThreadPool, Refusal> {
     rayon::ThreadPoolBuilder::new().num_threads(num).build().map_err(|e| format!("--threads {num}: {e}"))
 }
 
-fn draw(options: &RenderOptions, settings: &Settings, progress: &Progress) -> Result<(Frame, Report), Refusal> {
-    let start = Instant::now();
-    let mut renderer = prepare(options, settings, progress)?;
-    let load_ms = milliseconds(start);
-    let (frame, frames) = draw_frames(&mut renderer, options.repeat, progress);
-    Ok((frame, Report::new(frames, load_ms, rayon::current_num_threads(), settings)))
+struct Job<'a> {
+    options: &'a RenderOptions,
+    settings: Settings,
+    sequence: Sequence,
+    /// Numbers and files of what is to be drawn.
+    pictures: Vec<(u32, PathBuf)>,
+    way: Way,
+    progress: Progress,
 }
 
-fn prepare(options: &RenderOptions, settings: &Settings, progress: &Progress) -> Result<Renderer, Refusal> {
-    progress.stage("loading");
-    let loaded = options.scene.load(settings.lighting == Lighting::Lit)?;
-    loaded.choices.iter().for_each(|choice| progress.say(choice));
-    loaded.warnings.iter().for_each(|warning| progress.warn(warning));
-    progress.stage("building tables");
-    Renderer::new(loaded.scene, settings.clone()).map_err(|e| refusal(&e))
-}
-
-/// Draws once, or once to warm up and then `repeat` times. Gives the last frame and what each took.
-fn draw_frames(renderer: &mut Renderer, repeat: Option<u32>, progress: &Progress) -> (Frame, Vec<(f64, Stats)>) {
-    progress.stage("drawing");
-    let (mut frame, mut frames) = draw_timed(renderer, Vec::new());
-    if let Some(num) = repeat {
-        frames.clear();
-        for i in 1..=num {
-            progress.stage(format!("drawing frame {i} of {num}"));
-            (frame, frames) = draw_timed(renderer, frames);
+impl Job<'_> {
+    fn run(&self) -> Result<(), Refusal> {
+        let start = Instant::now();
+        let mut renderer = self.prepare()?;
+        let load_ms = start.elapsed().as_secs_f64() * 1e3;
+        let report = |took| Report::new(took, load_ms, rayon::current_num_threads(), &self.settings);
+        let took = self.draw_all(&mut renderer, &report)?;
+        if took.is_empty() {
+            return Ok(());
         }
+        let report = report(took);
+        if let Some(path) = &self.options.stats {
+            output::write(path, &report.json()?)?;
+        }
+        self.progress.say(&report.line());
+        match &self.pictures[..] {
+            [(_, path)] if output::is_stdout(path) => {}
+            [(_, path)] => self.progress.say(&format!("wrote {}", path.display())),
+            [(_, first), .., (_, last)] => {
+                let num = self.pictures.len();
+                self.progress.say(&format!("wrote {num} pictures, {} to {}", first.display(), last.display()));
+            }
+            [] => {}
+        }
+        Ok(())
     }
-    (frame, frames)
-}
 
-fn draw_timed(renderer: &mut Renderer, mut frames: Vec<(f64, Stats)>) -> (Frame, Vec<(f64, Stats)>) {
-    let start = Instant::now();
-    let (frame, stats) = renderer.render_timed(&|| milliseconds(start));
-    frames.push((milliseconds(start), stats));
-    (frame, frames)
-}
+    /// The renderer of the scene, with its tables; the scene file is written if one is asked for.
+    fn prepare(&self) -> Result<Renderer, Refusal> {
+        let Self { options, settings, progress, .. } = self;
+        progress.stage("loading");
+        let loaded = options.scene.load(settings.lighting == Lighting::Lit)?;
+        loaded.choices.iter().for_each(|choice| progress.say(choice));
+        loaded.warnings.iter().for_each(|warning| progress.warn(warning));
+        let camera = loaded.scene.camera;
+        let cameras = self.sequence.cameras(camera);
+        for (number, _) in self.pictures.iter().filter(|_| self.sequence.is_numbered()) {
+            cameras.camera(*number).validate().map_err(|e| format!("frame {number}: {}", refusal(&e)))?;
+        }
+        progress.stage("building tables");
+        let renderer =
+            Renderer::new(loaded.scene, picture::first_settings(settings, self.way)).map_err(|e| refusal(&e))?;
+        if let Some(path) = &options.save_scene {
+            output::write(path, scene_file::text(&options.scene, settings, &camera, path)?.as_bytes())?;
+        }
+        Ok(renderer)
+    }
 
-fn milliseconds(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64() * 1e3
+    fn draw_all(&self, renderer: &mut Renderer, report: &dyn Fn(Vec<Took>) -> Report) -> Result<Vec<Took>, Refusal> {
+        let cameras = self.sequence.cameras(renderer.scene().camera);
+        let mut all = Vec::new();
+        for (i, (number, path)) in self.pictures.iter().enumerate() {
+            renderer.set_camera(cameras.camera(*number)).map_err(|e| refusal(&e))?;
+            self.progress.stage(match self.sequence.is_numbered() {
+                true => format!("drawing frame {number} ({} of {})", i + 1, self.pictures.len()),
+                false => "drawing".into(),
+            });
+            let took = self.draw_one(renderer, path)?;
+            if self.options.json {
+                let frame = self.sequence.is_numbered().then_some(*number);
+                output::print(&report(took.clone()).of_picture(path, frame).json()?)?;
+            }
+            all.extend(took);
+        }
+        Ok(all)
+    }
+
+    /// Draws and writes a picture, or draws it once to warm up and then as often as it is to be measured.
+    fn draw_one(&self, renderer: &mut Renderer, path: &Path) -> Result<Vec<Took>, Refusal> {
+        let (Some(num), Way::Whole(format)) = (self.options.repeat, self.way) else {
+            return Ok(vec![picture::draw(renderer, &self.settings, path, self.way, &self.progress)?]);
+        };
+        let (mut frame, _) = picture::draw_timed(renderer);
+        let mut all = Vec::new();
+        for i in 1..=num {
+            self.progress.stage(format!("drawing frame {i} of {num}"));
+            let (drawn, took) = picture::draw_timed(renderer);
+            frame = drawn;
+            all.push(took);
+        }
+        picture::write(&frame, &self.settings, path, format)?;
+        Ok(all)
+    }
 }

@@ -1,132 +1,165 @@
 //! Options that say what is drawn: files, camera, lights and background.
+//!
+//! The tables of a scene file hold the same options under the same names: see `scene_file`.
 
-use super::choices::{self, one_of};
+use super::choices::{self, ON_OFF, one_of};
+use super::file_values::{self, PointLight, Spelt, Sun};
 use super::settings::refusal;
 use super::{Refusal, values};
-use basrelief::scene::{self, HeightSense, LoadOptions, Loaded, NormalY};
+use basrelief::scene::{self, HeightSense, LoadOptions, Loaded, MaterialOptions, NormalY};
 use basrelief::texture::Wrap;
 use basrelief::{Camera, Light, Scene};
 use clap::Args;
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::LazyLock;
 
-#[derive(Args)]
+#[derive(Args, Clone, Debug, Default)]
 pub(crate) struct SceneOptions {
-    /// OBJ file to draw, with its MTL files and images; without one, a built-in scene
-    #[arg(value_name = "SCENE.obj")]
-    obj: Option<PathBuf>,
+    /// What to draw: an OBJ file with its MTL files and images, or a scene file (TOML, see --save-scene), which other
+    /// options override; without one, a built-in scene
+    #[arg(value_name = "SCENE")]
+    pub(super) model: Option<PathBuf>,
     #[command(flatten)]
-    maps: MapOptions,
+    pub(super) all_materials: MapOptions,
+    /// Options of single materials by name; only scene files give them.
+    #[arg(skip)]
+    pub(super) material: BTreeMap<String, MapOptions>,
     #[command(flatten)]
-    limits: LimitOptions,
+    pub(super) limits: LimitOptions,
     #[command(flatten)]
-    camera: CameraOptions,
+    pub(super) camera: CameraOptions,
     #[command(flatten)]
-    lights: LightOptions,
+    pub(super) light: LightOptions,
 }
 
-#[derive(Args)]
-#[command(next_help_heading = "Materials of SCENE.obj")]
-struct MapOptions {
-    /// Colour image for all materials, in place of their own
-    #[arg(long, value_name = "FILE", requires = "obj")]
-    albedo: Option<PathBuf>,
-    /// Height image for all materials, in place of their own
-    #[arg(long, value_name = "FILE", requires = "obj")]
-    height: Option<PathBuf>,
-    /// Normal map for all materials, in place of their own
-    #[arg(long, value_name = "FILE", requires = "obj")]
-    normal: Option<PathBuf>,
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[command(next_help_heading = "All materials of SCENE, in place of what its files say")]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct MapOptions {
+    /// Colour image
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(super) albedo: Option<PathBuf>,
+    /// Height image
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(super) height: Option<PathBuf>,
+    /// Normal map
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(super) normal: Option<PathBuf>,
     /// Which end of the height images is high [default: white-high]
-    #[arg(long, value_name = "END", value_parser = one_of(choices::HEIGHT_SENSES), requires = "obj")]
+    #[arg(long, value_name = "END", value_parser = one_of(choices::HEIGHT_SENSES), requires = "model")]
+    #[serde(with = "choices")]
     height_sense: Option<HeightSense>,
     /// Depth of the relief in texture repeats, 0 to 1 [default: -bm of the MTL file, else 0.05]
-    #[arg(long, value_name = "D", value_parser = values::unit, allow_hyphen_values = true, requires = "obj")]
+    #[arg(long, value_name = "D", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::unit")]
     relief_depth: Option<f32>,
     /// Where the green of normal maps points [default: up]
-    #[arg(long, value_name = "WAY", value_parser = one_of(choices::NORMAL_YS), requires = "obj")]
+    #[arg(long, value_name = "WAY", value_parser = one_of(choices::NORMAL_YS), requires = "model")]
+    #[serde(with = "choices")]
     normal_y: Option<NormalY>,
     /// What lies beyond a texture's edges [default: clamp where the MTL file says so, else repeat]
-    #[arg(long, value_name = "HOW", value_parser = one_of(choices::WRAPS), requires = "obj")]
+    #[arg(long, value_name = "HOW", value_parser = one_of(choices::WRAPS), requires = "model")]
+    #[serde(with = "choices")]
     wrap: Option<Wrap>,
-    /// Let MTL files name images outside the folder of SCENE.obj
-    #[arg(long, requires = "obj")]
-    allow_outside: bool,
+    /// Diffuse colour, linear, which multiplies the colour image [default: Kd of the MTL file, else 1]
+    #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::intensity")]
+    diffuse: Option<Vec3>,
+    /// Colour of highlights, linear [default: Ks of the MTL file, else 0]
+    #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::intensity")]
+    specular: Option<Vec3>,
+    /// Exponent of highlights, 0 to 10000; more is sharper [default: Ns of the MTL file, else 32]
+    #[arg(long, value_name = "N", value_parser = values::exponent, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::exponent")]
+    shininess: Option<f32>,
 }
 
-/// What a limit is where it is not given.
-static DEFAULT: LazyLock<LoadOptions> = LazyLock::new(LoadOptions::default);
-
-#[derive(Args)]
-#[command(next_help_heading = "Limits for SCENE.obj, beyond which it is refused")]
-struct LimitOptions {
-    /// Most pixels of an image's side, 1 to 32768
-    #[arg(long, value_name = "N", default_value_t = DEFAULT.max_image_side, requires = "obj",
-          value_parser = clap::value_parser!(u32).range(1..=32768))]
-    max_image_side: u32,
-    /// Most memory of all images together in MiB while they are read, about 60 bytes a texel
-    #[arg(long, value_name = "N", default_value_t = DEFAULT.max_image_mib, requires = "obj",
-          value_parser = clap::value_parser!(u32).range(1..))]
-    max_image_mib: u32,
-    /// Most triangles, and most v, vt and vn lines each
-    #[arg(long, value_name = "N", default_value_t = DEFAULT.max_triangles, requires = "obj")]
-    max_triangles: u64,
-    /// Most image files
-    #[arg(long, value_name = "N", default_value_t = DEFAULT.max_textures, requires = "obj")]
-    max_textures: u32,
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[command(next_help_heading = "Limits for SCENE, beyond which it is refused")]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct LimitOptions {
+    /// Let MTL files name images outside the folder of the OBJ file
+    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on",
+          hide_possible_values = true, value_parser = one_of(ON_OFF), requires = "model")]
+    allow_outside: Option<bool>,
+    /// Most pixels of an image's side, 1 to 32768 [default: 32768]
+    #[arg(long, value_name = "N", requires = "model", value_parser = clap::value_parser!(u32).range(1..=32768))]
+    max_image_side: Option<u32>,
+    /// Most memory of all images together in MiB while they are read, about 60 bytes a texel [default: 1024]
+    #[arg(long, value_name = "N", requires = "model", value_parser = clap::value_parser!(u32).range(1..))]
+    max_image_mib: Option<u32>,
+    /// Most triangles, and most v, vt and vn lines each [default: 50000000]
+    #[arg(long, value_name = "N", requires = "model")]
+    max_triangles: Option<u64>,
+    /// Most image files [default: 1024]
+    #[arg(long, value_name = "N", requires = "model")]
+    max_textures: Option<u32>,
 }
 
-#[derive(Args)]
+#[derive(Args, Clone, Debug, Default, Serialize, Deserialize)]
 #[command(next_help_heading = "Camera (what is not given frames the scene)")]
-struct CameraOptions {
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct CameraOptions {
     /// Where the eye is, in the scene's units
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::vector")]
     eye: Option<Vec3>,
     /// The point in the middle of the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::vector")]
     target: Option<Vec3>,
     /// The direction that points upwards in the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::direction")]
     up: Option<Vec3>,
     /// Vertical field of view in degrees
     #[arg(long, value_name = "DEG", value_parser = values::field_of_view, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::field_of_view")]
     fov: Option<f32>,
     /// Distance from the eye before which nothing is drawn, in the scene's units
     #[arg(long, value_name = "D", value_parser = values::above_zero, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::above_zero")]
     near: Option<f32>,
 }
 
-#[derive(Args)]
+#[derive(Args, Clone, Debug, Default, Serialize, Deserialize)]
 #[command(next_help_heading = "Light and background")]
-struct LightOptions {
-    /// Light from far away: the direction towards it, and its linear colour, 1,1,1 if not given; may be repeated; takes
-    /// the place of the scene's own lights
-    #[arg(long, value_name = "X,Y,Z[,R,G,B]", value_parser = values::sun, allow_hyphen_values = true)]
-    sun: Vec<(Vec3, Vec3)>,
-    /// Light from a point: its place, and its linear colour at a distance of 1; may be repeated
-    #[arg(long, value_name = "X,Y,Z[,R,G,B]", value_parser = values::light, allow_hyphen_values = true)]
-    point_light: Vec<(Vec3, Vec3)>,
-    /// Light from everywhere, linear [default: the scene's own, 0.15 for SCENE.obj]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct LightOptions {
+    /// Light from everywhere, linear [default: the scene's own, 0.15 for an OBJ file]
     #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::intensity")]
     ambient: Option<Vec3>,
     /// Colour where nothing is hit, sRGB: transparent, #rrggbb, R,G,B of 0 to 255 or a name such as skyblue
-    /// [default: the scene's own, transparent for SCENE.obj]
-    #[arg(long, value_name = "COLOUR", value_parser = values::color, allow_hyphen_values = true)]
-    background: Option<[f32; 4]>,
+    /// [default: the scene's own, transparent for an OBJ file]
+    #[arg(long, value_name = "COLOUR", value_parser = Spelt::<[f32; 4]>::parse, allow_hyphen_values = true)]
+    background: Option<Spelt<[f32; 4]>>,
+    /// Light from far away: the direction towards it, and its linear colour, 1,1,1 if not given; may be repeated; takes
+    /// the place of the scene's own lights
+    #[arg(long, value_name = "X,Y,Z[,R,G,B]", value_parser = Sun::parse, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::suns", skip_serializing_if = "Vec::is_empty")]
+    sun: Vec<Sun>,
+    /// Light from a point: its place, and its linear colour at a distance of 1; may be repeated
+    #[arg(long, value_name = "X,Y,Z[,R,G,B]", value_parser = PointLight::parse, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::point_lights", skip_serializing_if = "Vec::is_empty")]
+    point_light: Vec<PointLight>,
 }
 
 impl SceneOptions {
     /// Whether a light is given.
     pub(crate) fn has_lights(&self) -> bool {
-        let lights = &self.lights;
-        !lights.sun.is_empty() || !lights.point_light.is_empty() || lights.ambient.is_some()
+        let light = &self.light;
+        !light.sun.is_empty() || !light.point_light.is_empty() || light.ambient.is_some()
     }
 
     /// Reads or makes the scene and sets what the options say.
     pub(crate) fn load(&self, is_lit: bool) -> Result<Loaded, Refusal> {
-        let mut loaded = match &self.obj {
+        let mut loaded = match &self.model {
             Some(obj) => scene::load(obj, &self.load_options(is_lit)).map_err(|e| refusal(&e))?,
+            None if self.has_maps() => return Err("materials are given, but no model (OBJ file) that has them".into()),
             None => built_in(),
         };
         self.set(&mut loaded.scene);
@@ -136,33 +169,58 @@ impl SceneOptions {
     /// Sets the camera, lights and background that are given.
     pub(crate) fn set(&self, scene: &mut Scene) {
         self.camera.place(&mut scene.camera);
-        self.lights.set(scene);
+        self.light.set(scene);
+    }
+
+    fn has_maps(&self) -> bool {
+        self.all_materials != MapOptions::default() || !self.material.is_empty()
     }
 
     fn load_options(&self, is_lit: bool) -> LoadOptions {
-        let (maps, limits) = (&self.maps, &self.limits);
+        let (maps, limits) = (&self.all_materials, &self.limits);
+        let default = LoadOptions::default();
         LoadOptions {
-            albedo: maps.albedo.clone(),
-            height: maps.height.clone(),
-            normal: maps.normal.clone(),
-            height_sense: maps.height_sense.unwrap_or_default(),
-            relief_depth: maps.relief_depth,
-            normal_y: maps.normal_y.unwrap_or_default(),
-            wrap: maps.wrap,
+            all: maps.material(),
+            materials: self.material.iter().map(|(name, maps)| (name.clone(), maps.material())).collect(),
             keep_normals: is_lit,
-            allow_outside: maps.allow_outside,
-            max_image_side: limits.max_image_side,
-            max_image_mib: limits.max_image_mib,
-            max_triangles: limits.max_triangles,
-            max_textures: limits.max_textures,
+            allow_outside: limits.allow_outside.unwrap_or(default.allow_outside),
+            max_image_side: limits.max_image_side.unwrap_or(default.max_image_side),
+            max_image_mib: limits.max_image_mib.unwrap_or(default.max_image_mib),
+            max_triangles: limits.max_triangles.unwrap_or(default.max_triangles),
+            max_textures: limits.max_textures.unwrap_or(default.max_textures),
+        }
+    }
+}
+
+impl MapOptions {
+    fn material(&self) -> MaterialOptions {
+        MaterialOptions {
+            albedo: self.albedo.clone(),
+            height: self.height.clone(),
+            normal: self.normal.clone(),
+            height_sense: self.height_sense,
+            relief_depth: self.relief_depth,
+            normal_y: self.normal_y,
+            wrap: self.wrap,
+            diffuse: self.diffuse,
+            specular: self.specular,
+            shininess: self.shininess,
         }
     }
 }
 
 /// The scene that is drawn where no file is named.
 fn built_in() -> Loaded {
-    let choices = vec!["no SCENE.obj given: drawing the built-in scene".into()];
+    let choices = vec!["no SCENE given: drawing the built-in scene".into()];
     Loaded { scene: scene::builtin(), choices, ..Loaded::default() }
+}
+
+impl From<&Camera> for CameraOptions {
+    /// Options that give all of `camera`.
+    fn from(camera: &Camera) -> Self {
+        let Camera { eye, target, up, fov_degrees, near } = *camera;
+        Self { eye: Some(eye), target: Some(target), up: Some(up), fov: Some(fov_degrees), near: Some(near) }
+    }
 }
 
 impl CameraOptions {
@@ -183,14 +241,15 @@ impl CameraOptions {
 impl LightOptions {
     /// Lights that are given take the place of the scene's own.
     fn set(&self, scene: &mut Scene) {
-        let suns = self.sun.iter().map(|&(to_light, intensity)| Light::Directional { to_light, intensity });
-        let points = self.point_light.iter().map(|&(position, intensity)| Light::Point { position, intensity });
+        let suns = self.sun.iter().map(|sun| Light::Directional { to_light: sun.direction, intensity: sun.color });
+        let point = |light: &PointLight| Light::Point { position: light.position, intensity: light.color };
+        let points = self.point_light.iter().map(point);
         let given: Vec<Light> = suns.chain(points).collect();
         if !given.is_empty() {
             scene.lights = given;
         }
         scene.ambient = self.ambient.unwrap_or(scene.ambient);
-        scene.background = self.background.unwrap_or(scene.background);
+        scene.background = self.background.as_ref().map_or(scene.background, |color| color.value);
     }
 }
 
@@ -229,11 +288,11 @@ mod tests {
     fn lights_replace_the_scenes_own() {
         let own = Light::Point { position: Vec3::ONE, intensity: Vec3::ONE };
         let mut scene = Scene { lights: vec![own], ambient: Vec3::ONE, ..Scene::default() };
-        parse("").unwrap().lights.set(&mut scene);
+        parse("").unwrap().light.set(&mut scene);
         assert!(scene.lights == [own] && scene.ambient == Vec3::ONE);
         let options = parse("--sun -1,2,3 --point-light 1,2,3,4,5,6 --sun 1,0,0 --ambient 0").unwrap();
         assert!(options.has_lights());
-        options.lights.set(&mut scene);
+        options.light.set(&mut scene);
         assert!(scene.lights.len() == 3 && scene.ambient == Vec3::ZERO);
     }
 
@@ -245,7 +304,7 @@ mod tests {
     #[test]
     fn options_of_files_need_a_file() {
         for line in ["--height a.png", "--wrap clamp", "--allow-outside", "--relief-depth 0.1", "--max-textures 3"] {
-            assert!(parse(line).err().unwrap().contains("SCENE.obj"), "{line}");
+            assert!(parse(line).err().unwrap().contains("SCENE"), "{line}");
             assert!(parse(&format!("a.obj {line}")).is_ok(), "{line}");
         }
         assert!(parse("a.obj --relief-depth 1.5").is_err() && parse("a.obj --relief-depth nan").is_err());

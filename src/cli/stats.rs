@@ -2,10 +2,11 @@
 
 use basrelief::{SIMD_LEVEL, Settings, Stats};
 use serde::Serialize;
+use std::path::Path;
 
 use super::choices::{FILTERS, word};
 
-/// One JSON object. Times are in milliseconds; those of a frame belong to the frame of the middle time.
+/// One JSON object; of several pictures in a row where `--json` prints one a line. Times are in milliseconds; those of a frame belong to the frame of the middle time.
 #[derive(Serialize)]
 pub(super) struct Report {
     frame_ms: f64,
@@ -24,6 +25,23 @@ pub(super) struct Report {
     width: u32,
     height: u32,
     filter: &'static str,
+    /// The picture's file, where the report is of one picture among others, and its number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<u32>,
+}
+
+/// Adds what drawing another part of a picture took.
+pub(super) fn add(sum: &mut Stats, part: &Stats) {
+    sum.geometry_ms += part.geometry_ms;
+    sum.raster_ms += part.raster_ms;
+    sum.shade_ms += part.shade_ms;
+    sum.pixels_shaded += part.pixels_shaded;
+    sum.texels_tested += part.texels_tested;
+    sum.texels_visible += part.texels_visible;
+    // Every part projects all triangles.
+    (sum.triangles_in, sum.triangles_drawn) = (part.triangles_in, part.triangles_drawn);
 }
 
 impl Report {
@@ -46,10 +64,17 @@ impl Report {
             threads,
             simd: SIMD_LEVEL,
             version: env!("CARGO_PKG_VERSION"),
-            width: settings.width,
-            height: settings.height,
+            width: settings.drawn().width,
+            height: settings.drawn().height,
             filter: word(FILTERS, &settings.filter),
+            file: None,
+            frame: None,
         }
+    }
+
+    /// The report of the picture in `file`, which may be one frame of many.
+    pub(super) fn of_picture(self, file: &Path, frame: Option<u32>) -> Self {
+        Self { file: Some(file.display().to_string()), frame, ..self }
     }
 
     /// A line for people.

@@ -1,5 +1,7 @@
-//! Options that are numbers, vectors, colours or sizes. Each parser says in a few words what it expected.
+//! Options that are numbers, vectors, colours or sizes. Each parser says in a few words what it expected. Scene files hold
+//! the same values, bounded by the same checks: see `file_values`.
 
+use basrelief::Region;
 use basrelief::texture::linear_from_srgb8;
 use glam::Vec3;
 
@@ -15,28 +17,33 @@ pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
     Ok([width, height])
 }
 
+/// A part of a frame in pixels from `X,Y,W,H`.
+pub(crate) fn region(text: &str) -> Result<Region, String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|part| digits(part.trim())).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, width, height]) => Ok(Region { x, y, width, height }),
+        _ => Err("is not X,Y,WIDTH,HEIGHT in pixels".into()),
+    }
+}
+
 /// A number without sign or blank.
-fn digits(text: &str) -> Option<u32> {
+pub(crate) fn digits(text: &str) -> Option<u32> {
     text.bytes().all(|b| b.is_ascii_digit()).then(|| text.parse().ok()).flatten()
 }
 
 /// A finite number within 1e18.
 pub(crate) fn number(text: &str) -> Result<f32, String> {
-    let value: f32 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
-    // Squares of larger numbers leave the range of f32.
-    if value.abs() <= 1e18 { Ok(value) } else { Err(format!("{value} is not within -1e18 to 1e18")) }
+    check::number(text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?)
 }
 
 /// A number of degrees above 0 and below 180.
 pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
-    let value = number(text)?;
-    if value > 0.0 && value < 180.0 { Ok(value) } else { Err("must be above 0 and below 180 degrees".into()) }
+    check::field_of_view(number(text)?)
 }
 
 /// A number above 0.
 pub(crate) fn above_zero(text: &str) -> Result<f32, String> {
-    let value = number(text)?;
-    if value > 0.0 { Ok(value) } else { Err("must be above 0".into()) }
+    check::above_zero(number(text)?)
 }
 
 /// A number above 0 and up to 1.
@@ -47,8 +54,12 @@ pub(crate) fn fraction(text: &str) -> Result<f32, String> {
 
 /// A number from 0 to 1.
 pub(crate) fn unit(text: &str) -> Result<f32, String> {
-    let value = number(text)?;
-    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err("must be within 0 to 1".into()) }
+    check::unit(number(text)?)
+}
+
+/// A Blinn-Phong exponent, 0 to 10000.
+pub(crate) fn exponent(text: &str) -> Result<f32, String> {
+    check::exponent(number(text)?)
 }
 
 /// Decibels, 0 or more.
@@ -71,42 +82,75 @@ pub(crate) fn vector(text: &str) -> Result<Vec3, String> {
 
 /// A direction `X,Y,Z` that is not zero.
 pub(crate) fn direction(text: &str) -> Result<Vec3, String> {
-    let value = vector(text)?;
-    if value.length_squared() >= 1e-30 { Ok(value) } else { Err("must not be zero".into()) }
+    check::direction(vector(text)?)
 }
 
 /// Linear RGB from `R,G,B` or one number for all three.
 pub(crate) fn intensity(text: &str) -> Result<Vec3, String> {
     match numbers(text)?[..] {
-        [gray] => bounded(Vec3::splat(gray)),
-        [r, g, b] => bounded(Vec3::new(r, g, b)),
+        [gray] => check::intensity(Vec3::splat(gray)),
+        [r, g, b] => check::intensity(Vec3::new(r, g, b)),
         _ => Err("is not one number or three numbers R,G,B".into()),
     }
 }
 
 /// A light: its place or direction `X,Y,Z` and its linear RGB, 1 where `R,G,B` is left out.
-pub(crate) fn light(text: &str) -> Result<(Vec3, Vec3), String> {
+pub(crate) fn light(text: &str) -> Result<[Vec3; 2], String> {
     match numbers(text)?[..] {
-        [x, y, z] => Ok((Vec3::new(x, y, z), Vec3::ONE)),
-        [x, y, z, r, g, b] => Ok((Vec3::new(x, y, z), bounded(Vec3::new(r, g, b))?)),
+        [x, y, z] => Ok([Vec3::new(x, y, z), Vec3::ONE]),
+        [x, y, z, r, g, b] => Ok([Vec3::new(x, y, z), check::intensity(Vec3::new(r, g, b))?]),
         _ => Err("is not X,Y,Z or X,Y,Z,R,G,B".into()),
     }
 }
 
 /// A light whose direction is not zero.
-pub(crate) fn sun(text: &str) -> Result<(Vec3, Vec3), String> {
-    let (to_light, intensity) = light(text)?;
-    if to_light.length_squared() < 1e-30 {
-        return Err("its direction must not be zero".into());
+pub(crate) fn sun(text: &str) -> Result<[Vec3; 2], String> {
+    let [to_light, intensity] = light(text)?;
+    match check::direction(to_light) {
+        Ok(to_light) => Ok([to_light, intensity]),
+        Err(reason) => Err(format!("its direction {reason}")),
     }
-    Ok((to_light, intensity))
 }
 
-fn bounded(intensity: Vec3) -> Result<Vec3, String> {
-    if intensity.min_element() >= 0.0 && intensity.max_element() <= 1e6 {
-        Ok(intensity)
-    } else {
-        Err("intensities must be within 0 to 1e6".into())
+/// Ranges of values, wherever they come from.
+pub(crate) mod check {
+    use glam::Vec3;
+
+    pub(crate) fn number(value: f32) -> Result<f32, String> {
+        // Squares of larger numbers leave the range of f32.
+        if value.abs() <= 1e18 { Ok(value) } else { Err(format!("{value} is not within -1e18 to 1e18")) }
+    }
+
+    pub(crate) fn field_of_view(value: f32) -> Result<f32, String> {
+        if value > 0.0 && value < 180.0 { Ok(value) } else { Err("must be above 0 and below 180 degrees".into()) }
+    }
+
+    pub(crate) fn above_zero(value: f32) -> Result<f32, String> {
+        if value > 0.0 { number(value) } else { Err("must be above 0".into()) }
+    }
+
+    pub(crate) fn unit(value: f32) -> Result<f32, String> {
+        if (0.0..=1.0).contains(&value) { Ok(value) } else { Err("must be within 0 to 1".into()) }
+    }
+
+    pub(crate) fn exponent(value: f32) -> Result<f32, String> {
+        if (0.0..=1e4).contains(&value) { Ok(value) } else { Err("must be within 0 to 10000".into()) }
+    }
+
+    pub(crate) fn vector(value: Vec3) -> Result<Vec3, String> {
+        value.to_array().into_iter().try_for_each(|component| number(component).map(drop)).map(|()| value)
+    }
+
+    pub(crate) fn direction(value: Vec3) -> Result<Vec3, String> {
+        if vector(value)?.length_squared() >= 1e-30 { Ok(value) } else { Err("must not be zero".into()) }
+    }
+
+    pub(crate) fn intensity(value: Vec3) -> Result<Vec3, String> {
+        if value.min_element() >= 0.0 && value.max_element() <= 1e6 {
+            Ok(value)
+        } else {
+            Err("intensities must be within 0 to 1e6".into())
+        }
     }
 }
 
@@ -171,6 +215,8 @@ mod tests {
         for bad in ["", "x", "12", "0x0", "0x5", "12x", "-1x5", "1x+5", "32769x1", "1x1x1", "99999999999x1"] {
             assert!(size(bad).is_err(), "{bad}");
         }
+        assert_eq!(region("1, 2,3,4"), Ok(Region { x: 1, y: 2, width: 3, height: 4 }));
+        assert!(["", "1,2,3", "1,2,3,4,5", "-1,2,3,4", "1,2,3,+4", "1 2,3,4"].iter().all(|bad| region(bad).is_err()));
     }
 
     #[test]
@@ -179,8 +225,8 @@ mod tests {
         for bad in ["nan,0,0", "1,inf,0", "1e39,0,0", "1e30,0,0", "1,2", "1,2,3,4", "", "1,,2", "a,b,c"] {
             assert!(vector(bad).is_err(), "{bad}");
         }
-        assert_eq!(light("1,2,3"), Ok((Vec3::new(1.0, 2.0, 3.0), Vec3::ONE)));
-        assert_eq!(light("1,2,3,4,5,6").map(|l| l.1), Ok(Vec3::new(4.0, 5.0, 6.0)));
+        assert_eq!(light("1,2,3"), Ok([Vec3::new(1.0, 2.0, 3.0), Vec3::ONE]));
+        assert_eq!(light("1,2,3,4,5,6").map(|l| l[1]), Ok(Vec3::new(4.0, 5.0, 6.0)));
         assert!(["1,2,3,-1,0,0", "1,2,3,nan,0,0", "1,2,3,4"].iter().all(|bad| light(bad).is_err()));
         assert!(["0,0,0", "0,0,0,1,1,1"].iter().all(|bad| sun(bad).is_err()) && direction("0,0,0").is_err());
         assert_eq!(intensity("0.5"), Ok(Vec3::splat(0.5)));

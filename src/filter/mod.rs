@@ -10,6 +10,7 @@ mod footprint;
 pub mod horizon;
 pub mod isotropic;
 pub mod parallax;
+mod seen;
 mod texel_set;
 pub mod truth;
 pub mod visible;
@@ -18,6 +19,7 @@ pub use ellipse::{Ellipse, RECONSTRUCTION};
 pub use far_field::FarField;
 pub use footprint::{Corner, Differences, Footprint, at_pixel, differences, differences_for};
 pub use horizon::PixelFootprints;
+pub use seen::seen_color;
 pub use texel_set::{TexelRow, TexelSet};
 
 use crate::settings::Settings;

@@ -1,8 +1,9 @@
 //! Image formats and their encoders.
 
 use super::Frame;
+use super::png::{Part, PngHead, write_png};
 use crate::error::{Error, Result};
-use image::codecs::{bmp, jpeg, openexr, png, tga, tiff};
+use image::codecs::{bmp, jpeg, openexr, tga, tiff};
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
 use std::io::Cursor;
 use std::path::Path;
@@ -59,36 +60,38 @@ impl Format {
     }
 }
 
-/// The bytes of `frame` as a file.
-pub(super) fn encode(frame: &Frame, format: Format) -> ImageResult<Vec<u8>> {
+/// The bytes of `frame` as a file, which in PNG says of what it is a part.
+pub(super) fn encode(frame: &Frame, format: Format, part: Option<Part>) -> Result<Vec<u8>> {
+    let has_opacity = format != Format::Jpeg && !frame.is_opaque();
     match format {
-        Format::Exr => encode_linear(frame),
-        Format::Jpeg => encode_bytes(frame, format, ExtendedColorType::Rgb8),
-        _ if frame.is_opaque() => encode_bytes(frame, format, ExtendedColorType::Rgb8),
-        _ => encode_bytes(frame, format, ExtendedColorType::Rgba8),
+        Format::Exr => encode_linear(frame, has_opacity),
+        Format::Png => {
+            let mut file = Vec::new();
+            let head = PngHead { width: frame.width, height: frame.height, has_opacity, part };
+            return write_png(&mut file, &head, [Ok(frame.to_bytes(has_opacity))]).map(|()| file);
+        }
+        _ => encode_bytes(frame, format, has_opacity),
     }
+    .map_err(|e| Error::scene("frame", e))
 }
 
-fn encode_bytes(frame: &Frame, format: Format, color: ExtendedColorType) -> ImageResult<Vec<u8>> {
-    let pixels = match color {
-        ExtendedColorType::Rgb8 => frame.to_rgb8().into_flattened(),
-        _ => frame.to_rgba8().into_flattened(),
-    };
+fn encode_bytes(frame: &Frame, format: Format, has_opacity: bool) -> ImageResult<Vec<u8>> {
+    let color = if has_opacity { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
+    let pixels = frame.to_bytes(has_opacity);
     let mut file = Cursor::new(Vec::new());
     let (width, height) = (frame.width, frame.height);
     match format {
         Format::Jpeg => jpeg::JpegEncoder::new_with_quality(&mut file, 95).write_image(&pixels, width, height, color),
         Format::Tga => tga::TgaEncoder::new(&mut file).write_image(&pixels, width, height, color),
         Format::Tiff => tiff::TiffEncoder::new(&mut file).write_image(&pixels, width, height, color),
-        Format::Bmp => bmp::BmpEncoder::new(&mut file).write_image(&pixels, width, height, color),
-        Format::Png | Format::Exr => png::PngEncoder::new(&mut file).write_image(&pixels, width, height, color),
+        _ => bmp::BmpEncoder::new(&mut file).write_image(&pixels, width, height, color),
     }?;
     Ok(file.into_inner())
 }
 
-fn encode_linear(frame: &Frame) -> ImageResult<Vec<u8>> {
+fn encode_linear(frame: &Frame, has_opacity: bool) -> ImageResult<Vec<u8>> {
     let (color, num_channels) =
-        if frame.is_opaque() { (ExtendedColorType::Rgb32F, 3) } else { (ExtendedColorType::Rgba32F, 4) };
+        if has_opacity { (ExtendedColorType::Rgba32F, 4) } else { (ExtendedColorType::Rgb32F, 3) };
     let pixels: Vec<u8> =
         frame.pixels.iter().flat_map(|pixel| &pixel[..num_channels]).flat_map(|c| c.to_ne_bytes()).collect();
     let mut file = Cursor::new(Vec::new());

@@ -4,12 +4,15 @@
 //! whoever looks finds the whole old file or the whole new one ([`write_whole`]).
 
 mod format;
+mod png;
 mod save;
 
+pub use self::png::{Part, PngHead, write_png};
 pub use format::Format;
-pub use save::{check_writable, write_whole};
+pub use save::{WholeFile, check_writable, write_whole};
 
 use crate::error::{Error, Result};
+use crate::settings::Region;
 use crate::texture::srgb8_from_linear;
 use rayon::prelude::*;
 use std::path::Path;
@@ -32,6 +35,21 @@ impl Frame {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
 
+    /// Keeps a part of the frame, in place.
+    ///
+    /// # Panics
+    /// If `region` does not lie within the frame.
+    pub fn crop(&mut self, region: Region) {
+        assert!(region.is_within(self.width, self.height), "the region must lie within the frame");
+        let [x, y, width, stride] = [region.x, region.y, region.width, self.width].map(|v| v as usize);
+        for row in 0..region.height as usize {
+            let start = (y + row) * stride + x;
+            self.pixels.copy_within(start..start + width, row * width);
+        }
+        self.pixels.truncate(width * region.height as usize);
+        (self.width, self.height) = (region.width, region.height);
+    }
+
     /// Whether no pixel lets anything through.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
@@ -50,6 +68,12 @@ impl Frame {
         self.pixels.par_iter().map(|&[r, g, b, _]| [r, g, b].map(srgb8_from_linear)).collect()
     }
 
+    /// 8-bit sRGB samples, row by row from the top: four a pixel with straight opacity, or three over black.
+    #[must_use]
+    pub fn to_bytes(&self, has_opacity: bool) -> Vec<u8> {
+        if has_opacity { self.to_rgba8().into_flattened() } else { self.to_rgb8().into_flattened() }
+    }
+
     /// The bytes of an image file.
     ///
     /// Formats of 8 bits hold sRGB: RGB where the frame is opaque everywhere, else RGBA with straight opacity; JPEG
@@ -58,10 +82,18 @@ impl Frame {
     /// # Errors
     /// Says why when the format cannot hold the frame.
     pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
+        self.encode_part(format, None)
+    }
+
+    /// The bytes of an image file that, in PNG, says of what larger picture it is a part; other formats cannot.
+    ///
+    /// # Errors
+    /// As [`Frame::encode`].
+    pub fn encode_part(&self, format: Format, part: Option<Part>) -> Result<Vec<u8>> {
         if self.pixels.len() as u64 != u64::from(self.width) * u64::from(self.height) || self.pixels.is_empty() {
             return Err(Error::scene("frame", "the number of pixels must be width times height and above 0"));
         }
-        format::encode(self, format).map_err(|e| Error::scene("frame", e))
+        format::encode(self, format, part)
     }
 
     /// Writes an image file in the format of its extension: png, jpg, jpeg, tga, tif, tiff, bmp or exr.

@@ -12,26 +12,96 @@ use tempfile::NamedTempFile;
 /// What the names of temporary files begin and end with.
 const TEMPORARY: [&str; 2] = [".basrelief-", ".tmp"];
 
-/// Writes `bytes` to the file `path`, replacing what was there in one step: at any moment, even if the process is
-/// killed or the disk fills up, the file is the whole old or the whole new one.
-///
-/// A link is followed; the permissions of an older file are kept. Devices and pipes are written to directly.
+/// Writes `bytes` to the file `path`, replacing what was there in one step: see [`WholeFile`].
 ///
 /// # Errors
 /// Names the file when it cannot be written; an older file is then left as it was.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    match Place::of(path)? {
-        Place::Stream => OpenOptions::new().write(true).open(path).and_then(|mut stream| stream.write_all(bytes)),
-        Place::File { target, permissions } => temporary_beside(&target).and_then(|mut file| {
-            // Its own writer would name the temporary file in an error.
-            file.as_file_mut().write_all(bytes)?;
+    let mut file = WholeFile::create(path)?;
+    file.write_all(bytes).map_err(|e| unwritable(path, &e))?;
+    file.finish()
+}
+
+/// A file that appears under its name when it is finished, and not before: at any moment, even if the process is killed
+/// or the disk fills up, the name stands for the whole old or the whole new file.
+///
+/// A link is followed; the permissions of an older file are kept. Devices and pipes are written to directly. Dropped
+/// without [`WholeFile::finish`], it leaves nothing behind.
+#[derive(Debug)]
+pub struct WholeFile {
+    path: PathBuf,
+    sink: Sink,
+}
+
+#[derive(Debug)]
+enum Sink {
+    Temporary { file: NamedTempFile, target: PathBuf, permissions: Option<Permissions> },
+    Stream(File),
+}
+
+impl WholeFile {
+    /// Opens a temporary file beside `path`.
+    ///
+    /// # Errors
+    /// Names the file and what is in the way.
+    pub fn create(path: &Path) -> Result<Self> {
+        let sink = match Place::of(path)? {
+            Place::Stream => OpenOptions::new().write(true).open(path).map(Sink::Stream),
+            Place::File { target, permissions } => {
+                temporary_beside(&target).map(|file| Sink::Temporary { file, target, permissions })
+            }
+        };
+        Ok(Self { path: path.into(), sink: sink.map_err(|e| unwritable(path, &e))? })
+    }
+
+    /// Where the bytes lie until the file is finished; `None` for devices and pipes.
+    #[must_use]
+    pub fn temporary_path(&self) -> Option<&Path> {
+        match &self.sink {
+            Sink::Temporary { file, .. } => Some(file.path()),
+            Sink::Stream(_) => None,
+        }
+    }
+
+    /// Flushes the file to the disk and gives it its name.
+    ///
+    /// # Errors
+    /// Names the file when that fails; an older file is then left as it was.
+    pub fn finish(self) -> Result<()> {
+        let Self { path, sink } = self;
+        let finish = |file: NamedTempFile, target: &Path, permissions: Option<Permissions>| {
             permissions.map_or(Ok(()), |permissions| fs::set_permissions(file.path(), permissions))?;
             file.as_file().sync_all()?;
-            file.persist(&target)?;
-            flush_folder(&target)
-        }),
+            file.persist(target)?;
+            flush_folder(target)
+        };
+        match sink {
+            Sink::Temporary { file, target, permissions } => finish(file, &target, permissions),
+            Sink::Stream(mut stream) => stream.flush(),
+        }
+        .map_err(|e| unwritable(&path, &e))
     }
-    .map_err(|e| Error::file(path, format!("cannot be written: {e}")))
+}
+
+impl Write for WholeFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.sink {
+            // Its own writer would name the temporary file in an error.
+            Sink::Temporary { file, .. } => file.as_file_mut().write(bytes),
+            Sink::Stream(stream) => stream.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.sink {
+            Sink::Temporary { file, .. } => file.as_file_mut().flush(),
+            Sink::Stream(stream) => stream.flush(),
+        }
+    }
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Error {
+    Error::file(path, format!("cannot be written: {error}"))
 }
 
 /// Checks, before the work, that [`write_whole`] could write the file `path`: its folder exists and takes files. Removes
@@ -44,7 +114,7 @@ pub fn check_writable(path: &Path) -> Result<()> {
         Place::Stream => Ok(()),
         Place::File { target, .. } => {
             remove_abandoned(folder(&target));
-            temporary_beside(&target).map(drop).map_err(|e| Error::file(path, format!("cannot be written: {e}")))
+            temporary_beside(&target).map(drop).map_err(|e| unwritable(path, &e))
         }
     }
 }

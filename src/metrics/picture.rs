@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::scene::decode::{self, ImageLimits};
 use crate::texture::srgb_from_linear;
-use image::ColorType;
+use image::{ColorType, DynamicImage};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -46,10 +46,18 @@ impl Picture {
     /// Names the file and why it cannot be read, or that it has more than `max_pixels` pixels.
     pub fn open_within(path: impl AsRef<Path>, max_pixels: u64) -> Result<Self> {
         let path = path.as_ref();
-        // The widest sample format has 16 bytes a pixel.
-        let limits =
-            ImageLimits { side: u32::MAX, texels: max_pixels, bytes: max_pixels.saturating_mul(16).max(1 << 20) };
-        let image = decode::image(path, limits)?;
+        Self::of_image(decode::image(path, limits(max_pixels))?)
+    }
+
+    /// Decodes an image file from memory, as [`Picture::open`] does; `name` is for messages, and its extension tells a TGA.
+    ///
+    /// # Errors
+    /// As [`Picture::open`].
+    pub fn from_bytes(bytes: &[u8], name: impl AsRef<Path>) -> Result<Self> {
+        Self::of_image(decode::image_bytes(bytes, name.as_ref(), limits(Self::MAX_PIXELS))?)
+    }
+
+    fn of_image(image: DynamicImage) -> Result<Self> {
         let (width, height) = (image.width(), image.height());
         let is_linear = matches!(image.color(), ColorType::Rgb32F | ColorType::Rgba32F);
         let pixels = image.into_rgba32f().into_raw().as_chunks().0.to_vec();
@@ -99,6 +107,11 @@ impl From<&Frame> for Picture {
         pixels.resize(frame.width as usize * frame.height as usize, [0.0; 4]);
         Self { width: frame.width, height: frame.height, pixels }
     }
+}
+
+/// What an image of `texels` pixels may need. The widest sample format has 16 bytes a pixel.
+fn limits(texels: u64) -> ImageLimits {
+    ImageLimits { side: u32::MAX, texels, bytes: texels.saturating_mul(16).max(1 << 20) }
 }
 
 /// `value` within 0 to 1; NaN, which `f32::clamp` would keep, gives 0.

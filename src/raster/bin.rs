@@ -4,43 +4,51 @@
 //! and one that fills, into one flat list. A tile reads its part of group after group, which is the triangles' order, so
 //! neither groups nor threads show.
 
-use super::edge::{Edges, Rect};
+use super::block::SHADED_BLOCK;
+use super::edge::{BLOCK, Edges, Rect};
 use crate::geometry::{Geometry, ScreenTriangle, offset_bounds, sample_offsets};
-use crate::settings::Settings;
+use crate::settings::{Region, Settings};
 use rayon::prelude::*;
 
 /// Groups a thread: more balance better and cost `4 * num_tiles` bytes each.
 const GROUPS_PER_THREAD: usize = 2;
 
-/// The tiles of a frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What a part of a frame is widened to: blocks of coverage and of shading lie where they do in the whole frame.
+const ALIGNED: i32 = if SHADED_BLOCK as i32 > BLOCK { SHADED_BLOCK as i32 } else { BLOCK };
+
+/// The tiles of a frame, or of a part of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TileGrid {
     /// Side of a tile in pixels.
     pub tile_size: i32,
     /// Columns and rows of tiles.
     pub num_tiles: [i32; 2],
-    /// Columns and rows of the frame's pixels.
-    pub size: [i32; 2],
+    /// The pixels that the tiles cover: the region of the settings, widened to whole blocks within the frame.
+    pub area: Rect,
     /// Least and largest offset of a sample from its pixel's corner in 1/256 pixel.
     pub offset_bounds: [i32; 2],
 }
 
 impl TileGrid {
-    /// The tiles that cover the frame of `settings`.
+    /// The tiles that cover what `settings` draw.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
-        let size = [settings.width as i32, settings.height as i32];
+        let Region { x, y, width, height } = settings.drawn();
+        let frame = [settings.width as i32, settings.height as i32];
+        let ends = [x + width, y + height].map(|end| (end as i32 + ALIGNED - 1) & -ALIGNED);
+        let area = Rect { min: [x, y].map(|v| v as i32 & -ALIGNED), max: [0, 1].map(|i| ends[i].min(frame[i])) };
         let tile_size = settings.tile_size as i32;
-        let num_tiles = size.map(|s| (s + tile_size - 1) / tile_size);
-        Self { tile_size, num_tiles, size, offset_bounds: offset_bounds(settings.msaa) }
+        let num_tiles = area.size().map(|s| (s + tile_size - 1) / tile_size);
+        Self { tile_size, num_tiles, area, offset_bounds: offset_bounds(settings.msaa) }
     }
 
-    /// The pixels of a tile that lie in the frame; tiles count from the left, row by row.
+    /// The pixels of a tile that lie in the area; tiles count from the left, row by row.
     #[must_use]
     pub fn rect(&self, tile: usize) -> Rect {
         let tile = tile as i32;
-        let min = [tile % self.num_tiles[0], tile / self.num_tiles[0]].map(|t| t * self.tile_size);
-        Rect { min, max: [0, 1].map(|i| (min[i] + self.tile_size).min(self.size[i])) }
+        let place = [tile % self.num_tiles[0], tile / self.num_tiles[0]];
+        let min = [0, 1].map(|i| self.area.min[i] + place[i] * self.tile_size);
+        Rect { min, max: [0, 1].map(|i| (min[i] + self.tile_size).min(self.area.max[i])) }
     }
 
     /// How many tiles there are.
@@ -99,12 +107,13 @@ impl Group {
 
 #[inline(always)]
 fn for_each_tile(triangle: &ScreenTriangle, grid: &TileGrid, mut found: impl FnMut(usize)) {
-    let bounds = bounds(triangle, &Rect { min: [0; 2], max: grid.size }, grid.offset_bounds);
+    let bounds = bounds(triangle, &grid.area, grid.offset_bounds);
     if bounds.min[0] >= bounds.max[0] || bounds.min[1] >= bounds.max[1] {
         return;
     }
     let shift = grid.tile_size.trailing_zeros();
-    let (first, last) = (bounds.min.map(|v| v >> shift), bounds.max.map(|v| (v - 1) >> shift));
+    let first = [0, 1].map(|i| (bounds.min[i] - grid.area.min[i]) >> shift);
+    let last = [0, 1].map(|i| (bounds.max[i] - 1 - grid.area.min[i]) >> shift);
     let tile = |x: i32, y: i32| (y * grid.num_tiles[0] + x) as usize;
     if last[0] - first[0] <= 1 && last[1] - first[1] <= 1 {
         (first[1]..=last[1]).for_each(|y| (first[0]..=last[0]).for_each(|x| found(tile(x, y))));
@@ -155,8 +164,8 @@ impl Bins {
     }
 }
 
-/// How often each pixel's samples are covered, without depth: `width * height` sums over the samples of a pixel, cut
-/// off at 255. What tests of coverage look at, and what shows overdraw.
+/// How often each pixel's samples are covered, without depth: a sum over the samples of each pixel of the grid's area,
+/// cut off at 255. What tests of coverage look at, and what shows overdraw.
 #[must_use]
 pub fn hit_counts(geometry: &Geometry, settings: &Settings) -> Vec<u8> {
     match settings.msaa {
@@ -170,7 +179,8 @@ fn count_hits<const S: usize>(geometry: &Geometry, settings: &Settings) -> Vec<u
     let grid = TileGrid::new(settings);
     let mut bins = Bins::default();
     bins.fill(geometry, &grid);
-    let mut counts = vec![0_u8; settings.width as usize * settings.height as usize];
+    let [width, height] = grid.area.size().map(|side| side as usize);
+    let mut counts = vec![0_u8; width * height];
     let mut list = Vec::new();
     for tile in 0..grid.num() {
         list.clear();
@@ -180,7 +190,8 @@ fn count_hits<const S: usize>(geometry: &Geometry, settings: &Settings) -> Vec<u
             let triangle = geometry.triangle(index);
             let edges = Edges::<S>::new(&triangle.corners, sample_offsets(settings.msaa));
             edges.cover(&bounds(triangle, &rect, grid.offset_bounds), &mut |row| {
-                let start = row.y as usize * settings.width as usize + row.x as usize;
+                let [x, y] = [row.x - grid.area.min[0], row.y - grid.area.min[1]].map(|v| v as usize);
+                let start = y * width + x;
                 let num = (rect.max[0] - row.x).min(8) as usize;
                 for (count, is_covered) in counts[start..start + num].iter_mut().zip(row.mask.to_array()) {
                     *count = count.saturating_add((is_covered & 1) as u8);

@@ -52,7 +52,7 @@ pub fn draw(
 impl Rasterizer {
     /// Draws the triangles of `geometry`, which must have been projected from `scene` under `settings`. `shade` appends
     /// the linear red, green and blue of eight pixels for each pair of a block, which must depend on that block only. The
-    /// frame is resized to the settings and overwritten.
+    /// frame is resized to the [area](TileGrid::area) of the tiles and overwritten.
     pub fn draw(
         &mut self,
         geometry: &Geometry,
@@ -63,8 +63,8 @@ impl Rasterizer {
     ) -> RasterStats {
         let grid = TileGrid::new(settings);
         self.bins.fill(geometry, &grid);
-        (frame.width, frame.height) = (settings.width, settings.height);
-        frame.pixels.resize(settings.width as usize * settings.height as usize, Pixel::default());
+        [frame.width, frame.height] = grid.area.size().map(|side| side as u32);
+        frame.pixels.resize(frame.width as usize * frame.height as usize, Pixel::default());
         let painter = Painter { geometry, scene, settings, grid, bins: &self.bins };
         let scratches = &self.scratches;
         let mut rows = rows_by_tile(frame, &grid);

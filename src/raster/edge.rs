@@ -22,6 +22,15 @@ pub struct Rect {
     pub max: [i32; 2],
 }
 
+impl Rect {
+    /// Columns and rows.
+    #[must_use]
+    #[inline]
+    pub fn size(&self) -> [i32; 2] {
+        [self.max[0] - self.min[0], self.max[1] - self.min[1]]
+    }
+}
+
 /// Eight pixels of a row as one sample of each sees the triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {

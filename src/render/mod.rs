@@ -13,9 +13,9 @@ mod tables;
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::geometry::Geometry;
-use crate::raster::{QuadBlock, Rasterizer};
+use crate::raster::{QuadBlock, Rasterizer, TileGrid};
 use crate::scene::{Camera, Scene};
-use crate::settings::Settings;
+use crate::settings::{Region, Settings};
 use quads::QuadShader;
 use std::sync::atomic::{AtomicU64, Ordering};
 use tables::Tables;
@@ -91,6 +91,15 @@ impl Renderer {
         Ok(())
     }
 
+    /// Draws the next frames' part `region`, or the whole frames, and leaves the other settings as they are.
+    ///
+    /// # Errors
+    /// Says so when the region does not lie within the frame.
+    pub fn set_region(&mut self, region: Option<Region>) -> Result<()> {
+        let old = std::mem::replace(&mut self.settings.region, region);
+        self.settings.validate().inspect_err(|_| self.settings.region = old)
+    }
+
     /// What is drawn.
     #[must_use]
     pub fn scene(&self) -> &Scene {
@@ -121,8 +130,13 @@ impl Renderer {
             shader.shade(block, colors);
             shade_ns.fetch_add(((clock() - before) * 1e6) as u64, Ordering::Relaxed);
         };
-        let mut frame = Frame::filled(settings.width, settings.height, [0.0; 4]);
+        let mut frame = Frame { width: 0, height: 0, pixels: Vec::new() };
         let counts = rasterizer.draw(geometry, scene, settings, &shade, &mut frame);
+        if let Some(region) = settings.region {
+            // The tiles cover whole blocks, which begin a few pixels before the region.
+            let [x, y] = TileGrid::new(settings).area.min.map(|v| v as u32);
+            frame.crop(Region { x: region.x - x, y: region.y - y, ..region });
+        }
         let shade_ms = shade_ns.into_inner() as f64 * 1e-6;
         let [texels_tested, texels_visible] = shader.num_texels();
         let stats = Stats {

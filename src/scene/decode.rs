@@ -49,6 +49,11 @@ pub(crate) fn image(path: &Path, limits: ImageLimits) -> Result<DynamicImage> {
     run(path, || image_from(open(path, limits)?, path, limits))
 }
 
+/// Decodes an image file in memory; `path` serves for messages and for formats without a signature.
+pub(crate) fn image_bytes(bytes: &[u8], path: &Path, limits: ImageLimits) -> Result<DynamicImage> {
+    run(path, || image_from(std::io::Cursor::new(bytes), path, limits))
+}
+
 /// Decodes an image file to its samples.
 pub(super) fn decode(path: &Path, limits: ImageLimits) -> Result<Samples> {
     run(path, || samples(image_from(open(path, limits)?, path, limits)?))

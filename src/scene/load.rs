@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::texture::Wrap;
 use glam::Vec3;
 use std::cell::RefCell;
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
@@ -37,23 +37,57 @@ pub enum NormalY {
     Down,
 }
 
-/// How [`load`] reads a scene. `None` leaves the choice to the material files.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadOptions {
-    /// Colour map for every material with texture coordinates, in place of its own.
+/// What the caller says of materials in place of their file. `None`, the default, leaves it to the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MaterialOptions {
+    /// Colour map for materials with texture coordinates.
     pub albedo: Option<PathBuf>,
-    /// Height map for every material with texture coordinates, in place of its own.
+    /// Height map for materials with texture coordinates.
     pub height: Option<PathBuf>,
-    /// Normal map for every material with texture coordinates, in place of its own.
+    /// Normal map for materials with texture coordinates.
     pub normal: Option<PathBuf>,
-    /// Which end of the height maps is high. Default: white.
-    pub height_sense: HeightSense,
+    /// Which end of the height map is high; `None`: white.
+    pub height_sense: Option<HeightSense>,
     /// Relief depth in texture repeats, 0 to 1; `None`: `-bm` of the height map in the MTL, else 0.05.
     pub relief_depth: Option<f32>,
-    /// Where the normal maps' green points. Default: up.
-    pub normal_y: NormalY,
+    /// Where the normal map's green points; `None`: up.
+    pub normal_y: Option<NormalY>,
     /// What lies beyond a texture's edges; `None`: clamp where the MTL says `-clamp on`, else repeat.
     pub wrap: Option<Wrap>,
+    /// Diffuse colour, linear RGB, 0 to 1e6; `None`: `Kd`, else 1.
+    pub diffuse: Option<Vec3>,
+    /// Colour of highlights, linear RGB, 0 to 1e6; `None`: `Ks`, else 0.
+    pub specular: Option<Vec3>,
+    /// Blinn-Phong exponent, 0 to 1e4; `None`: `Ns`, else 32.
+    pub shininess: Option<f32>,
+}
+
+impl MaterialOptions {
+    /// These options, and those of `other` where these say nothing.
+    #[must_use]
+    pub fn or(self, other: &Self) -> Self {
+        Self {
+            albedo: self.albedo.or_else(|| other.albedo.clone()),
+            height: self.height.or_else(|| other.height.clone()),
+            normal: self.normal.or_else(|| other.normal.clone()),
+            height_sense: self.height_sense.or(other.height_sense),
+            relief_depth: self.relief_depth.or(other.relief_depth),
+            normal_y: self.normal_y.or(other.normal_y),
+            wrap: self.wrap.or(other.wrap),
+            diffuse: self.diffuse.or(other.diffuse),
+            specular: self.specular.or(other.specular),
+            shininess: self.shininess.or(other.shininess),
+        }
+    }
+}
+
+/// How [`load`] reads a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadOptions {
+    /// What is said of all materials. Default: nothing.
+    pub all: MaterialOptions,
+    /// What is said of single materials, by their names, before what is said of all. Default: nothing.
+    pub materials: BTreeMap<String, MaterialOptions>,
     /// Whether surfaces keep normals, which only lighting needs. Default: `false`.
     pub keep_normals: bool,
     /// Whether files that lie outside the OBJ's folder, also by a link, may be read when a material names them.
@@ -73,13 +107,8 @@ pub struct LoadOptions {
 impl Default for LoadOptions {
     fn default() -> Self {
         Self {
-            albedo: None,
-            height: None,
-            normal: None,
-            height_sense: HeightSense::WhiteHigh,
-            relief_depth: None,
-            normal_y: NormalY::Up,
-            wrap: None,
+            all: MaterialOptions::default(),
+            materials: BTreeMap::new(),
             keep_normals: false,
             allow_outside: false,
             max_image_side: 32768,
@@ -126,7 +155,8 @@ impl Source for ObjFile<'_> {
 
 /// [`load`] from any source of text.
 pub(super) fn load_from(source: &dyn Source, folder: &Folder, options: &LoadOptions) -> Result<Loaded> {
-    if options.relief_depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth)) {
+    let mut depths = options.materials.values().chain([&options.all]).map(|given| given.relief_depth);
+    if depths.any(|depth| depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth))) {
         return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
     }
     let mtl = RefCell::new(MtlFiles::new(source.path(), folder));
@@ -143,6 +173,7 @@ pub(super) fn load_from(source: &dyn Source, folder: &Folder, options: &LoadOpti
     if meshes.iter().any(|mesh| mesh.material == materials.len()) {
         materials.push(MtlMaterial { name: "none".into(), ..MtlMaterial::default() });
     }
+    check_names(options, &materials)?;
     let (materials, choices) = finish(&meshes, &materials, folder, options, &mut warnings)?;
     let mut scene = Scene { meshes, materials, ..Scene::default() };
     frame(&mut scene);
@@ -150,6 +181,15 @@ pub(super) fn load_from(source: &dyn Source, folder: &Folder, options: &LoadOpti
     let mut seen = HashSet::new();
     warnings.retain(|warning| seen.insert(warning.clone()));
     Ok(Loaded { scene, choices, warnings })
+}
+
+/// Refuses options for a material that is not there, which would be lost in silence.
+fn check_names(options: &LoadOptions, materials: &[MtlMaterial]) -> Result<()> {
+    let is_there = |name: &String| materials.iter().any(|material| material.name == *name);
+    let Some(missing) = options.materials.keys().find(|name| !is_there(name)) else { return Ok(()) };
+    let names: Vec<&str> = materials.iter().map(|material| material.name.as_str()).collect();
+    let reason = format!("is not there; the model's materials are {}", names.join(", "));
+    Err(Error::scene(format!("material {missing}"), reason))
 }
 
 /// Materials with their surfaces, and what was chosen.
@@ -171,22 +211,24 @@ fn finish(
     let surfaces = surfaces::build(&plans.iter().flatten().cloned().collect(), options)?;
     let finished = materials.iter().zip(&plans).map(|(material, plan)| {
         let surface = plan.as_ref().and_then(|plan| surfaces.get(plan)).cloned();
-        Material { surface, ..plain_material(material) }
+        let own = options.materials.get(&material.name).cloned().unwrap_or_default();
+        Material { surface, ..plain_material(material, &own.or(&options.all)) }
     });
     Ok((finished.collect(), planner.choices))
 }
 
-fn plain_material(from: &MtlMaterial) -> Material {
+fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
     // Beyond these bounds a colour or exponent is a mistake in the file that need not stop the picture.
     let color = |c: [f32; 3]| Vec3::from_array(c).clamp(Vec3::ZERO, Vec3::splat(1e6));
+    let exponent = |exponent: f32| exponent.clamp(0.0, 1e4);
     let fallback = Material::default();
     // Exporters write `Ns 0` for a surface without a highlight; taken by the letter it is one of no end.
     let specular = from.specular.filter(|_| from.shininess != Some(0.0));
     Material {
         name: from.name.clone(),
-        diffuse: from.diffuse.map_or(fallback.diffuse, color),
-        specular: specular.map_or(fallback.specular, color),
-        shininess: from.shininess.map_or(fallback.shininess, |exponent| exponent.clamp(0.0, 1e4)),
+        diffuse: given.diffuse.or(from.diffuse.map(color)).unwrap_or(fallback.diffuse),
+        specular: given.specular.or(specular.map(color)).unwrap_or(fallback.specular),
+        shininess: given.shininess.or(from.shininess.map(exponent)).unwrap_or(fallback.shininess),
         surface: None,
     }
 }

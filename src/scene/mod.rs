@@ -25,7 +25,7 @@ mod texture_line;
 pub use builtin::builtin;
 pub use camera::Camera;
 pub use light::Light;
-pub use load::{HeightSense, LoadOptions, Loaded, NormalY, load};
+pub use load::{HeightSense, LoadOptions, Loaded, MaterialOptions, NormalY, load};
 pub use material::Material;
 #[doc(hidden)]
 pub use memory::{load_image_bytes, load_mtl_bytes, load_obj_bytes};

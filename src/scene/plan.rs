@@ -5,7 +5,7 @@
 
 use super::decode;
 use super::files::{self, Folder};
-use super::load::{HeightSense, LoadOptions, NormalY};
+use super::load::{HeightSense, LoadOptions, MaterialOptions, NormalY};
 use super::mtl::{MtlMaterial, TextureRef};
 use super::surfaces::image_limits;
 use super::texture_line::Channel;
@@ -77,19 +77,13 @@ impl Plan {
     }
 }
 
-/// The maps that the caller names in place of the materials' own.
-#[derive(Debug, Default)]
-struct Replacements {
-    albedo: Option<PathBuf>,
-    height: Option<PathBuf>,
-    normal: Option<PathBuf>,
-}
-
 /// Plans one material after another.
 pub(super) struct Planner<'a> {
     options: &'a LoadOptions,
     folder: &'a Folder,
-    replacements: Replacements,
+    /// What the caller says, with absolute paths: of all materials, and of single ones by name.
+    of_all: MaterialOptions,
+    of_one: BTreeMap<&'a str, MaterialOptions>,
     /// Whether the image behind a `bump` is gray.
     is_gray: BTreeMap<PathBuf, bool>,
     pub(super) choices: Vec<String>,
@@ -102,27 +96,32 @@ impl<'a> Planner<'a> {
     /// # Errors
     /// Names a file that is missing or refused.
     pub(super) fn new(options: &'a LoadOptions, folder: &'a Folder, materials: &[&MtlMaterial]) -> Result<Self> {
-        let real = |path: &Option<PathBuf>| path.as_deref().map(real_path).transpose();
-        let (albedo, height, normal) = (real(&options.albedo)?, real(&options.height)?, real(&options.normal)?);
-        let mut planner = Self {
-            options,
-            folder,
-            replacements: Replacements { albedo, height, normal },
-            is_gray: BTreeMap::new(),
-            choices: Vec::new(),
-            warnings: Vec::new(),
-        };
+        let of_all = with_real_paths(&options.all)?;
+        let of_one = options.materials.iter();
+        let of_one = of_one.map(|(name, own)| Ok((name.as_str(), with_real_paths(own)?.or(&of_all))));
+        let of_one = of_one.collect::<Result<_>>()?;
+        let (is_gray, choices, warnings) = Default::default();
+        let mut planner = Self { options, folder, of_all, of_one, is_gray, choices, warnings };
         planner.note_replacements();
         planner.look_at_bumps(materials)?;
         Ok(planner)
     }
 
+    fn given(&self, material: &MtlMaterial) -> &MaterialOptions {
+        self.of_one.get(material.name.as_str()).unwrap_or(&self.of_all)
+    }
+
     fn note_replacements(&mut self) {
-        let named =
-            [("colour", &self.options.albedo), ("height", &self.options.height), ("normals", &self.options.normal)];
-        for (what, path) in named {
+        self.note("every material", &self.options.all);
+        for (name, own) in &self.options.materials {
+            self.note(&format!("material {name}"), own);
+        }
+    }
+
+    fn note(&mut self, whose: &str, given: &MaterialOptions) {
+        for (what, path) in [("colour", &given.albedo), ("height", &given.height), ("normals", &given.normal)] {
             if let Some(path) = path {
-                self.choices.push(format!("every material: {what} from {}", path.display()));
+                self.choices.push(format!("{whose}: {what} from {}", path.display()));
             }
         }
     }
@@ -132,9 +131,9 @@ impl<'a> Planner<'a> {
         for material in materials {
             let Some(bump) = material.bump.as_ref().filter(|bump| bump.texture.channel.is_none()) else { continue };
             let find = |map: &TextureRef| self.folder.resolve(&map.texture.name, &map.path).ok().flatten();
-            let has_height = self.replacements.height.is_some() || material.height.as_ref().and_then(find).is_some();
+            let has_height = self.given(material).height.is_some() || material.height.as_ref().and_then(find).is_some();
             // Where both height and normals are settled without it, the image need not be read.
-            if !has_height || self.wants_normals() {
+            if !has_height || self.wants_normals(material) {
                 paths.extend(find(bump));
             }
         }
@@ -155,8 +154,8 @@ impl<'a> Planner<'a> {
         Ok(())
     }
 
-    fn wants_normals(&self) -> bool {
-        self.options.keep_normals && self.replacements.normal.is_none()
+    fn wants_normals(&self, material: &MtlMaterial) -> bool {
+        self.options.keep_normals && self.given(material).normal.is_none()
     }
 
     /// The maps of a material that is drawn with texture coordinates; `None` when it has none.
@@ -174,8 +173,11 @@ impl<'a> Planner<'a> {
         };
         let (height, depth, height_clamped) = self.height(material, bump_height)?;
         let normal = self.normal(material, bump_normal)?;
-        let wrap =
-            self.options.wrap.unwrap_or(if albedo_clamped || height_clamped { Wrap::Clamp } else { Wrap::Repeat });
+        let wrap = self.given(material).wrap.unwrap_or(if albedo_clamped || height_clamped {
+            Wrap::Clamp
+        } else {
+            Wrap::Repeat
+        });
         let wrap = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp].iter().position(|w| *w == wrap).unwrap_or_default() as u8;
         let plan = Plan { albedo, height, normal, wrap, depth: depth.to_bits() };
         let has_maps = plan.maps().next().is_some();
@@ -197,7 +199,7 @@ impl<'a> Planner<'a> {
     }
 
     fn albedo(&mut self, material: &MtlMaterial) -> Result<(Option<Map>, bool)> {
-        if let Some(path) = self.replacements.albedo.clone() {
+        if let Some(path) = self.given(material).albedo.clone() {
             return Ok((Some(Map { path, kind: Kind::Color }), false));
         }
         let found = self.found(material.albedo.as_ref())?;
@@ -210,9 +212,11 @@ impl<'a> Planner<'a> {
         material: &MtlMaterial,
         bump: Option<(&TextureRef, PathBuf)>,
     ) -> Result<(Option<Map>, f32, bool)> {
-        let fallback = self.options.relief_depth.unwrap_or(DEFAULT_DEPTH);
-        if let Some(path) = self.replacements.height.clone() {
-            let kind = self.height_kind(None, [0.0, 1.0], false);
+        let MaterialOptions { height, height_sense, relief_depth, .. } = self.given(material).clone();
+        let height_sense = height_sense.unwrap_or_default();
+        let fallback = relief_depth.unwrap_or(DEFAULT_DEPTH);
+        if let Some(path) = height {
+            let kind = height_kind(height_sense, None, [0.0, 1.0], false);
             return Ok((Some(Map { path, kind }), fallback, false));
         }
         let Some((texture, path)) = self.found(material.height.as_ref())?.or(bump) else {
@@ -221,29 +225,23 @@ impl<'a> Planner<'a> {
         let line = &texture.texture;
         // A negative -bm turns the relief over; the polygon stays its top.
         let bump = line.bump.unwrap_or(DEFAULT_DEPTH);
-        let depth = self.options.relief_depth.unwrap_or(bump.abs().min(1.0));
-        if self.options.relief_depth.is_none() && bump.abs() > 1.0 {
+        let depth = relief_depth.unwrap_or(bump.abs().min(1.0));
+        if relief_depth.is_none() && bump.abs() > 1.0 {
             self.warnings.push(texture.place().remark(format_args!("-bm {bump} is cut to a relief depth of 1 repeat")));
         }
         let (keyword, name) = (texture.keyword, &line.name);
         self.choices.push(format!("material {}: height from {keyword} {name}, relief depth {depth}", material.name));
-        let kind = self.height_kind(line.channel, line.range, bump < 0.0);
+        let kind = height_kind(height_sense, line.channel, line.range, bump < 0.0);
         Ok((Some(Map { path, kind }), depth, line.is_clamped))
     }
 
-    fn height_kind(&self, channel: Option<Channel>, [base, gain]: [f32; 2], is_turned: bool) -> Kind {
-        let is_deep = self.options.height_sense == HeightSense::WhiteDeep;
-        let range = if is_deep != is_turned { [1.0 - base, -gain] } else { [base, gain] };
-        Kind::Height { channel, range: range.map(f32::to_bits) }
-    }
-
     fn normal(&mut self, material: &MtlMaterial, bump: Option<(&TextureRef, PathBuf)>) -> Result<Option<Map>> {
-        let is_green_down = self.options.normal_y == NormalY::Down;
+        let is_green_down = self.given(material).normal_y == Some(NormalY::Down);
         let kind = |strength: f32| Kind::Normal { strength: strength.to_bits(), is_green_down };
         if !self.options.keep_normals {
             return Ok(None);
         }
-        if let Some(path) = self.replacements.normal.clone() {
+        if let Some(path) = self.given(material).normal.clone() {
             return Ok(Some(Map { path, kind: kind(1.0) }));
         }
         let Some((texture, path)) = self.found(material.normal.as_ref())?.or(bump) else {
@@ -253,6 +251,19 @@ impl<'a> Planner<'a> {
         self.choices.push(format!("material {}: normals from {keyword} {name}", material.name));
         Ok(Some(Map { path, kind: kind(texture.texture.bump.unwrap_or(1.0)) }))
     }
+}
+
+fn height_kind(sense: HeightSense, channel: Option<Channel>, [base, gain]: [f32; 2], is_turned: bool) -> Kind {
+    let is_deep = sense == HeightSense::WhiteDeep;
+    let range = if is_deep != is_turned { [1.0 - base, -gain] } else { [base, gain] };
+    Kind::Height { channel, range: range.map(f32::to_bits) }
+}
+
+/// `given` with its files' absolute paths.
+fn with_real_paths(given: &MaterialOptions) -> Result<MaterialOptions> {
+    let real = |path: &Option<PathBuf>| path.as_deref().map(real_path).transpose();
+    let (albedo, height, normal) = (real(&given.albedo)?, real(&given.height)?, real(&given.normal)?);
+    Ok(MaterialOptions { albedo, height, normal, ..given.clone() })
 }
 
 /// The path of a file that the caller named.

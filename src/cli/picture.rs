@@ -1,0 +1,145 @@
+//! One picture: drawn and written whole, or band by band where it is large.
+
+use super::progress::Progress;
+use super::settings::refusal;
+use super::{Refusal, output, stats};
+use basrelief::frame::{Format, Part, PngHead, write_png};
+use basrelief::{Frame, Region, Renderer, Settings, Stats};
+use std::io::BufWriter;
+use std::path::Path;
+use std::time::Instant;
+
+/// Pixels of a picture from which on it is drawn in bands: 256 MiB as a frame.
+const LARGE: u64 = 1 << 24;
+/// Pixels of a band: 64 MiB as a frame, and many tiles for every thread.
+const BAND: u32 = 1 << 22;
+/// Most pixels of a picture that is drawn whole: 4 GiB as a frame.
+const MAX_WHOLE: u64 = 1 << 28;
+
+/// What drawing took, in milliseconds and in all.
+pub(super) type Took = (f64, Stats);
+
+/// The settings that the renderer of a picture is made with: of one that is drawn in bands, those of the first.
+pub(super) fn first_settings(settings: &Settings, way: Way) -> Settings {
+    let Region { width, height, .. } = settings.drawn();
+    let first = Region { height: band_height(width).min(height), ..settings.drawn() };
+    Settings { region: if way == Way::Bands { Some(first) } else { settings.region }, ..settings.clone() }
+}
+
+/// Rows of a band.
+fn band_height(width: u32) -> u32 {
+    (BAND / width).max(8)
+}
+
+/// How a picture is drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Way {
+    /// In memory, in any format.
+    Whole(Format),
+    /// In bands, each written before the next is drawn, as PNG.
+    Bands,
+}
+
+impl Way {
+    /// How a picture of this size and format is drawn.
+    ///
+    /// # Errors
+    /// Says so where the picture is too large for its format, or to be drawn more than once.
+    pub(super) fn of(settings: &Settings, format: Format, is_repeated: bool) -> Result<Self, Refusal> {
+        let Region { width, height, .. } = settings.drawn();
+        let num_pixels = u64::from(width) * u64::from(height);
+        let in_bands = format == Format::Png && !is_repeated;
+        match num_pixels {
+            num if num > LARGE && in_bands => Ok(Self::Bands),
+            num if num > MAX_WHOLE => Err(format!(
+                "--size: {width}x{height} is more than {MAX_WHOLE} pixels: only .png without --repeat can hold that"
+            )),
+            _ => Ok(Self::Whole(format)),
+        }
+    }
+}
+
+/// Draws the picture of `settings`, with which the renderer was made, into the file `path`.
+pub(super) fn draw(
+    renderer: &mut Renderer,
+    settings: &Settings,
+    path: &Path,
+    way: Way,
+    progress: &Progress,
+) -> Result<Took, Refusal> {
+    match way {
+        Way::Whole(format) => {
+            let (frame, took) = draw_timed(renderer);
+            write(&frame, settings, path, format).map(|()| took)
+        }
+        Way::Bands => draw_bands(renderer, settings, path, progress),
+    }
+}
+
+/// Draws the renderer's frame in memory.
+pub(super) fn draw_timed(renderer: &mut Renderer) -> (Frame, Took) {
+    let start = Instant::now();
+    let (frame, stats) = renderer.render_timed(&|| milliseconds(start));
+    (frame, (milliseconds(start), stats))
+}
+
+/// Writes a frame that was drawn under `settings`.
+pub(super) fn write(frame: &Frame, settings: &Settings, path: &Path, format: Format) -> Result<(), Refusal> {
+    let bytes = frame.encode_part(format, part(settings)).map_err(|e| refusal(&e))?;
+    output::write(path, &bytes)
+}
+
+/// What the picture of `settings` is a part of, if it is.
+fn part(settings: &Settings) -> Option<Part> {
+    settings.region.map(|region| Part { region, whole: [settings.width, settings.height] })
+}
+
+fn draw_bands(renderer: &mut Renderer, settings: &Settings, path: &Path, progress: &Progress) -> Result<Took, Refusal> {
+    let drawn = settings.drawn();
+    // Over an opaque background every pixel is opaque; over another, what follows below is not known yet.
+    let has_opacity = renderer.scene().background[3] < 1.0;
+    let (width, height, part) = (drawn.width, drawn.height, part(settings));
+    let head = PngHead { width, height, has_opacity, part };
+    let num_rows = band_height(width);
+    let mut took = Took::default();
+    let bands = (0..height).step_by(num_rows as usize).map(|y| {
+        progress.stage(format!("drawing row {y} of {height}"));
+        let band = Region { y: drawn.y + y, height: num_rows.min(height - y), ..drawn };
+        renderer.set_region(Some(band))?;
+        let (frame, (ms, stats)) = draw_timed(renderer);
+        took.0 += ms;
+        stats::add(&mut took.1, &stats);
+        Ok(frame.to_bytes(has_opacity))
+    });
+    output::write_by(path, |sink| {
+        let sink = BufWriter::with_capacity(1 << 20, sink);
+        write_png(sink, &head, bands).map_err(|e| format!("{}: {}", path.display(), refusal(&e)))
+    })?;
+    Ok(took)
+}
+
+fn milliseconds(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn way(width: u32, height: u32, format: Format, is_repeated: bool) -> Result<Way, Refusal> {
+        Way::of(&Settings { width, height, ..Settings::default() }, format, is_repeated)
+    }
+
+    #[test]
+    fn only_large_png_pictures_are_drawn_in_bands() {
+        assert!(way(4096, 4096, Format::Png, false) == Ok(Way::Whole(Format::Png)));
+        assert!(way(4097, 4096, Format::Png, false) == Ok(Way::Bands));
+        assert!(way(32768, 32768, Format::Png, false) == Ok(Way::Bands));
+        assert!(way(8192, 8192, Format::Exr, false) == Ok(Way::Whole(Format::Exr)));
+        assert!(way(32768, 32768, Format::Exr, false).is_err_and(|text| text.contains("--size")));
+        assert!(way(32768, 32768, Format::Png, true).is_err());
+        let region = Some(Region { x: 9, y: 9, width: 90, height: 90 });
+        let settings = Settings { width: 32768, height: 32768, region, ..Settings::default() };
+        assert!(Way::of(&settings, Format::Tiff, true) == Ok(Way::Whole(Format::Tiff)));
+    }
+}
