@@ -1,7 +1,7 @@
 //! Geometry and raster: set-up, binning, and whole frames of a flat colour, for many small triangles and for one huge one.
 
 use basrelief::geometry::{Geometry, project};
-use basrelief::raster::{Bins, QuadPair, Rasterizer, TileGrid, hit_counts};
+use basrelief::raster::{Bins, QuadBlock, Rasterizer, TileGrid, hit_counts};
 use basrelief::simd::PixelLanes;
 use basrelief::{Camera, Frame, Material, Mesh, Scene, Settings};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -41,8 +41,8 @@ fn scenes() -> [(&'static str, Scene); 3] {
     [("100k_triangles", terrain(223)), ("1m_triangles", terrain(707)), ("floor", floor())]
 }
 
-fn flat(pair: &QuadPair) -> [PixelLanes; 3] {
-    [pair.uv[0], pair.uv[1], pair.view[2]]
+fn flat(block: &QuadBlock, colors: &mut Vec<[PixelLanes; 3]>) {
+    colors.extend(block.pairs().map(|pair| [pair.uv[0], pair.uv[1], pair.view[2]]));
 }
 
 fn geometry(criterion: &mut Criterion) {

@@ -187,7 +187,8 @@ impl Settings {
         }
         let Region { width, height, .. } = self.drawn();
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            return Err(Error::setting("width", format!("{width} x {height} is more than {MAX_PIXELS} pixels")));
+            let name = if self.region.is_some() { "region" } else { "width" };
+            return Err(Error::setting(name, format!("{width} x {height} is more than {MAX_PIXELS} pixels")));
         }
         within("samples", self.samples, 1, 65536)?;
         within("lines", self.lines, 2, 64)?;

@@ -74,6 +74,7 @@ fn bad_options_are_refused() {
         ("--lines 1", "--lines"),
         ("--max-anisotropy inf", "--max-anisotropy"),
         ("--max-anisotropy -1", "--max-anisotropy"),
+        ("--max-stretch 0.5", "--max-stretch"),
         ("--far-field-mib 5000", "--far-field-mib"),
         ("--background nocolour", "--background"),
         ("--background 256,0,0", "--background"),
@@ -137,7 +138,7 @@ fn disk_that_fills_up_leaves_the_old_file() {
     folder.put("out.bmp", "old");
     let program = env!("CARGO_BIN_EXE_basrelief");
     let script = format!("trap '' XFSZ; ulimit -f 8; exec {program} quad.obj --size 200x200 -q -o out.bmp");
-    let output = Command::new("sh").args(["-c", &script]).current_dir(folder.0.path()).output().unwrap();
+    let output = Command::new("sh").args(["-c", &script]).current_dir(folder.path(".")).output().unwrap();
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.starts_with("basrelief: out.bmp: cannot be written: File too large"), "{message}");
@@ -202,7 +203,7 @@ fn every_option_is_accepted() {
     folder.put_image("map.png", [0.5, 0.5, 0.5, 1.0]);
     folder.succeeds(
         "quad.obj -o a.png --size 8x8 --filter visible --visible resolved --parallax on --derivatives flat --formulas printed \
-         --texel-budget 64 --max-anisotropy 8 --samples 2 --lines 8 --far-field off --far-field-mib 1 --lighting lit --cull \
+         --texel-budget 64 --max-anisotropy 8 --max-stretch 2 --samples 2 --lines 8 --far-field off --far-field-mib 1 --lighting lit --cull \
          --msaa 1 --tile 8 --albedo map.png --height map.png --normal map.png --height-sense white-deep --relief-depth 0.1 \
          --normal-y down --wrap mirror --allow-outside --diffuse 0.5 --specular 0.1,0.2,0.3 --shininess 9 --region 0,1,7,6 \
          --max-image-side 64 --max-image-mib 64 --max-triangles 9 --max-textures 9 --eye -1,-1,3 --target -0.1,0,0 --up 0,1,-0.1 --fov 40 --near 0.1 \

@@ -1,5 +1,5 @@
 //! Cases of public conformance suites, by their parameters: the fill rules of OpenGL ES 3, the anisotropy and explicit
-//! levels of Vulkan, the anisotropy of WebGPU, the odd aspect ratios of OpenImageIO, the magnified lines of pbrt.
+//! levels of Vulkan, the anisotropy of WebGPU, the odd aspect ratios of `OpenImageIO`, the magnified lines of pbrt.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! The paper's sets of texels: T, T_vis, two-ended rows, trace and resolve.
+//! The paper's sets of texels: T, `T_vis`, two-ended rows, trace and resolve.
 #![no_main]
 
 use basrelief::invariants::visible_sets;

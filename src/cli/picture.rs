@@ -26,9 +26,9 @@ pub(super) fn first_settings(settings: &Settings, way: Way) -> Settings {
     Settings { region: if way == Way::Bands { Some(first) } else { settings.region }, ..settings.clone() }
 }
 
-/// Rows of a band.
+/// Rows of a band: whole tiles of the usual size, so that few pixels are drawn for two bands.
 fn band_height(width: u32) -> u32 {
-    (BAND / width).max(8)
+    ((BAND / width) & !31).max(32)
 }
 
 /// How a picture is drawn.

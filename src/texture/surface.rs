@@ -123,7 +123,7 @@ impl Surface {
         {
             return Err("the levels of its surface do not fit together; Surface::new makes them".into());
         }
-        if !(0.0..=1.0).contains(&self.relief_depth) || !(self.color_scale > 0.0 && self.color_scale <= 1e6) {
+        if !((0.0..=1.0).contains(&self.relief_depth) && self.color_scale > 0.0 && self.color_scale <= 1e6) {
             return Err("its surface's relief depth must be within 0 to 1, its colour scale above 0, up to 1e6".into());
         }
         Ok(())
