@@ -209,7 +209,8 @@ proptest! {
         match Renderer::new(scene, settings.clone()) {
             Ok(mut renderer) => {
                 let frame = renderer.render();
-                prop_assert_eq!((frame.width, frame.height), (settings.width, settings.height));
+                let drawn = settings.region.map_or((settings.width, settings.height), |r| (r.width, r.height));
+                prop_assert_eq!((frame.width, frame.height), drawn);
                 let bad = frame.pixels.iter().find(|pixel| !pixel.iter().all(|c| c.is_finite() && *c >= 0.0));
                 prop_assert!(bad.is_none(), "{bad:?}");
             }
