@@ -59,11 +59,11 @@ impl Scene {
     pub fn validate(&self) -> Result<()> {
         self.camera.validate()?;
         for (i, material) in self.materials.iter().enumerate() {
-            material.validate().map_err(|reason| Error::scene(format!("material {i} ({})", material.name), reason))?;
+            material.validate().map_err(|reason| Error::scene(format!("material {i} ({})", material.name.escape_debug()), reason))?;
         }
         for (i, mesh) in self.meshes.iter().enumerate() {
             mesh.validate(self.materials.len())
-                .map_err(|reason| Error::scene(format!("mesh {i} ({})", mesh.name), reason))?;
+                .map_err(|reason| Error::scene(format!("mesh {i} ({})", mesh.name.escape_debug()), reason))?;
         }
         for (i, light) in self.lights.iter().enumerate() {
             light.validate().map_err(|reason| Error::scene(format!("light {i}"), reason))?;
