@@ -155,3 +155,15 @@ fn horizon_is_steady_in_motion() {
     println!("mean square of the error's change: horizon {horizon:e}, parallax with 4 rays {parallax:e}");
     assert!(horizon < 0.1 * parallax, "{horizon:e} against {parallax:e}");
 }
+
+/// Thin footprints at the skyline once fell between the texels of a table, and were black.
+#[test]
+fn no_pixel_of_the_far_field_is_black() {
+    let settings = Settings { width: 640, height: 48, ..Settings::default() };
+    let scene = basrelief::scene::builtin();
+    let mut renderer = Renderer::new(scene, settings).expect("a valid scene");
+    let camera = renderer.scene().camera;
+    renderer.set_camera(Camera { fov_degrees: camera.fov_degrees * 0.1, ..camera }).expect("a camera");
+    let frame = renderer.render();
+    assert!(frame.pixels.iter().all(|[r, g, b, _]| r + g + b > 0.01));
+}

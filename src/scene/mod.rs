@@ -59,7 +59,9 @@ impl Scene {
     pub fn validate(&self) -> Result<()> {
         self.camera.validate()?;
         for (i, material) in self.materials.iter().enumerate() {
-            material.validate().map_err(|reason| Error::scene(format!("material {i} ({})", material.name.escape_debug()), reason))?;
+            material
+                .validate()
+                .map_err(|reason| Error::scene(format!("material {i} ({})", material.name.escape_debug()), reason))?;
         }
         for (i, mesh) in self.meshes.iter().enumerate() {
             mesh.validate(self.materials.len())

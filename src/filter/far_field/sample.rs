@@ -3,7 +3,7 @@
 use super::encode::{UNITS, decode};
 use super::{FarField, FarImage, NUM_LENGTHS};
 use crate::filter::texel_set::{RowQuadric, lane_columns};
-use crate::filter::{Ellipse, Filtered, Footprint, PixelFootprints};
+use crate::filter::{Ellipse, Filtered, Footprint, PixelFootprints, RECONSTRUCTION};
 use crate::settings::{Formulas, Settings};
 use crate::simd::{PixelLanes, TexelLanes, exp_negative, sum, u32x8};
 use crate::texture::{FULL_F32, Surface};
@@ -76,7 +76,12 @@ impl FarField {
             2.0 * short < 2.0 * TEXELS_ACROSS && 2.0 * long < TEXELS_ALONG
         };
         let level = (self.first_level..last).find(fits).unwrap_or(last);
-        (level, at(level))
+        let Ellipse { a, b, c, f } = at(level);
+        let [short, long] = at(level).squared_axes();
+        // A thin ellipse may fall between texels: it gets their kernel.
+        let kernel = RECONSTRUCTION * (2.0 - short).clamp(0.0, 1.0);
+        let f = if kernel > 0.0 { (short + kernel) * (long + kernel) } else { f };
+        (level, Ellipse { a: a + kernel, b, c: c + kernel, f })
     }
 }
 
