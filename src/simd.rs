@@ -31,6 +31,9 @@ pub const LEVEL: &str = if cfg!(target_feature = "avx512f") {
 /// Eight texels.
 pub type TexelLanes = f32x8;
 
+/// A value of sixteen neighbouring lines of a sweep.
+pub type LineLanes = f32x16;
+
 /// The sum of the lanes, in one fixed order on every machine.
 #[must_use]
 pub fn sum(lanes: f32x8) -> f32 {
@@ -50,6 +53,20 @@ pub fn high_half(words: u32x8) -> f32x8 {
     f32x8::from_i32x8(as_signed(words >> 16_u32))
 }
 
+/// [`low_half`] of sixteen words.
+#[must_use]
+#[inline(always)]
+pub fn low_halves(words: u32x16) -> f32x16 {
+    f32x16::from_i32x16(wide::bytemuck::cast(words & u32x16::splat(0xffff)))
+}
+
+/// [`high_half`] of sixteen words.
+#[must_use]
+#[inline(always)]
+pub fn high_halves(words: u32x16) -> f32x16 {
+    f32x16::from_i32x16(wide::bytemuck::cast(words >> 16_u32))
+}
+
 /// `exp(-x)` for `0 <= x <= 2`, off by less than 1e-5: an eighth of x by Taylor's series, then three squarings.
 #[must_use]
 pub fn exp_negative(x: f32x8) -> f32x8 {
@@ -60,19 +77,44 @@ pub fn exp_negative(x: f32x8) -> f32x8 {
     e4 * e4
 }
 
-/// Of sixteen words in a row, those with the given numbers, 0 to 15.
+/// Of the words from `start` on, those with the given numbers and the ones after them. Numbers ascend from 0 or 1, each
+/// at most 2 more than the one before.
 #[must_use]
 #[inline(always)]
-pub fn pick_words(words: [u32x8; 2], numbers: u32x8) -> u32x8 {
-    if cfg!(all(target_feature = "avx512f", target_feature = "avx512vl")) {
-        wide::ShuffleExt::shuffle(words, numbers)
+pub fn pick_words(words: &[u32], start: usize, numbers: i32x16) -> [u32x16; 2] {
+    if cfg!(target_feature = "avx512f") {
+        let run = |start: usize| {
+            let lanes: &[u32; 16] = words[start..start + 16].try_into().expect("a slice of sixteen");
+            u32x16::new(*lanes)
+        };
+        let runs = [run(start), run(start + 16)];
+        let numbers: u32x16 = wide::bytemuck::cast(numbers);
+        [numbers, numbers + u32x16::splat(1)].map(|numbers| wide::ShuffleExt::shuffle(runs, numbers))
     } else {
-        // Elsewhere a selection of two is faster than what shuffles of two vectors are made of.
-        let is_second: i32x8 = as_signed(numbers).simd_gt(i32x8::splat(7));
-        let numbers = numbers & u32x8::splat(7);
-        let [first, second] = words.map(|words| as_signed(words.shuffle(numbers)));
-        as_unsigned(is_second.select(second, first))
+        // Eight at a time: each half lies within sixteen words of its own.
+        let halves: [i32x8; 2] = wide::bytemuck::cast(numbers);
+        let [[a, b], [c, d]] = halves.map(|numbers| {
+            let first = numbers.as_array()[0];
+            let run = |start: usize| {
+                let lanes: &[u32; 8] = words[start..start + 8].try_into().expect("a slice of eight");
+                u32x8::new(*lanes)
+            };
+            let start = start + first as usize;
+            let runs = [run(start), run(start + 8)];
+            [0, 1].map(|next| pick_eight(runs, numbers - i32x8::splat(first - next)))
+        });
+        [wide::bytemuck::cast([a, c]), wide::bytemuck::cast([b, d])]
     }
+}
+
+/// Of sixteen words in a row, those with the given numbers, 0 to 15, by a selection of two: faster than what shuffles of two
+/// vectors are made of.
+#[inline(always)]
+fn pick_eight(words: [u32x8; 2], numbers: i32x8) -> u32x8 {
+    let is_second: i32x8 = numbers.simd_gt(i32x8::splat(7));
+    let numbers = as_unsigned(numbers) & u32x8::splat(7);
+    let [first, second] = words.map(|words| as_signed(words.shuffle(numbers)));
+    as_unsigned(is_second.select(second, first))
 }
 
 /// The same bits as signed numbers.
@@ -99,6 +141,30 @@ pub fn lanes(mask: i32x8) -> f32x8 {
     wide::bytemuck::cast(mask)
 }
 
+/// [`mask`] of sixteen lanes.
+#[must_use]
+pub fn line_mask(comparison: f32x16) -> i32x16 {
+    wide::bytemuck::cast(comparison)
+}
+
+/// [`lanes`] of sixteen numbers.
+#[must_use]
+pub fn line_lanes(mask: i32x16) -> f32x16 {
+    wide::bytemuck::cast(mask)
+}
+
+/// Sixteen lanes of two vectors of eight.
+#[must_use]
+pub fn join(halves: [f32x8; 2]) -> f32x16 {
+    wide::bytemuck::cast(halves)
+}
+
+/// The two vectors of eight that sixteen words are.
+#[must_use]
+pub fn halves(words: u32x16) -> [u32x8; 2] {
+    wide::bytemuck::cast(words)
+}
+
 /// Interpolates between packed texels, both 16-bit halves of a word at once; halves must be below 32768.
 #[derive(Clone, Copy, Debug)]
 pub struct Blend(wide::i16x16);
@@ -116,5 +182,27 @@ impl Blend {
     pub fn mix(self, [near, far]: [u32x8; 2]) -> u32x8 {
         let (near, far): (wide::i16x16, wide::i16x16) = (wide::bytemuck::cast(near), wide::bytemuck::cast(far));
         wide::bytemuck::cast(near + (far - near).mul_scale_round(self.0))
+    }
+}
+
+/// [`Blend`] of sixteen lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct LineBlend([Blend; 2]);
+
+impl LineBlend {
+    /// See [`Blend::new`].
+    #[must_use]
+    #[inline(always)]
+    pub fn new(part: f32x16) -> Self {
+        let parts: [f32x8; 2] = wide::bytemuck::cast(part);
+        Self(parts.map(Blend::new))
+    }
+
+    /// See [`Blend::mix`].
+    #[must_use]
+    #[inline(always)]
+    pub fn mix(self, [near, far]: [u32x16; 2]) -> u32x16 {
+        let (near, far) = (halves(near), halves(far));
+        wide::bytemuck::cast([0, 1].map(|i| self.0[i].mix([near[i], far[i]])))
     }
 }

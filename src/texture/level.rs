@@ -15,7 +15,7 @@ pub const FULL: u32 = 32767;
 pub(crate) const FULL_F32: f32 = FULL as f32;
 
 /// Texels that a row repeats beyond both of its ends: the widest run of lanes that is loaded at once.
-pub(crate) const APRON: usize = 16;
+pub(crate) const APRON: usize = 32;
 
 /// One texel as it is packed.
 pub(crate) type PackedTexel = [u32; 3];
