@@ -127,7 +127,8 @@ pub struct Settings {
     pub cull_back_faces: bool,
     /// Coverage and depth samples a pixel: 1, 4 or 8. Shading stays once per pixel and triangle. Default: 1.
     pub msaa: u32,
-    /// Side of a tile in pixels: 8, 16, 32, 64, 128 or 256. The picture does not depend on it. Default: 32.
+    /// Side of a tile in pixels: 8 (drawn as 16, the side of a block of shading), 16, 32, 64, 128 or 256. The picture does
+    /// not depend on it. Default: 32.
     pub tile_size: u32,
 }
 

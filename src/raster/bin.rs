@@ -19,7 +19,7 @@ const ALIGNED: i32 = if SHADED_BLOCK as i32 > BLOCK { SHADED_BLOCK as i32 } else
 /// The tiles of a frame, or of a part of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TileGrid {
-    /// Side of a tile in pixels.
+    /// Side of a tile in pixels: that of a block of shading at least.
     pub tile_size: i32,
     /// Columns and rows of tiles.
     pub num_tiles: [i32; 2],
@@ -37,7 +37,8 @@ impl TileGrid {
         let frame = [settings.width as i32, settings.height as i32];
         let ends = [x + width, y + height].map(|end| (end as i32 + ALIGNED - 1) & -ALIGNED);
         let area = Rect { min: [x, y].map(|v| v as i32 & -ALIGNED), max: [0, 1].map(|i| ends[i].min(frame[i])) };
-        let tile_size = settings.tile_size as i32;
+        // What a block of shading sees of a material is drawn at once.
+        let tile_size = settings.tile_size.max(SHADED_BLOCK as u32) as i32;
         let num_tiles = area.size().map(|s| (s + tile_size - 1) / tile_size);
         Self { tile_size, num_tiles, area, offset_bounds: offset_bounds(settings.msaa) }
     }

@@ -4,9 +4,9 @@ use super::gather::SeenQuad;
 use super::quad::{AttributePlanes, QuadPair};
 
 /// Side of a block in pixels; blocks lie on multiples of it in the frame.
-pub const SHADED_BLOCK: usize = 8;
+pub const SHADED_BLOCK: usize = 16;
 
-/// What a block of 8x8 pixels sees of one material: each triangle's quads, row by row.
+/// What a block of 16x16 pixels sees of one material: each triangle's quads, row by row of each 8x8 pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadBlock<'a> {
     /// Index of the material.

@@ -20,19 +20,20 @@ pub(super) struct SeenQuad {
     pub(super) material: u32,
 }
 
-/// Lists what `buffer` sees, block by block and quad by quad.
+/// Rows of a part of a block: each is as wide as a lane vector, and neighbours in the list are neighbours on the screen.
+const PART: usize = 8;
+
+/// Lists what `buffer` sees, block by block, part by part and quad by quad.
 pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<SeenQuad>) {
     seen.clear();
     let [num_columns, num_rows] = buffer.size();
-    let places =
-        (0..num_rows.div_ceil(SHADED_BLOCK)).flat_map(|block| (0..num_columns).map(move |column| (block, column)));
-    for (block, column) in places {
-        for row in (block * SHADED_BLOCK..num_rows.min((block + 1) * SHADED_BLOCK)).step_by(2) {
+    for (column, start) in parts(num_columns, num_rows) {
+        for row in (start..num_rows.min(start + PART)).step_by(2) {
             let pixels: [[u32x8; 2]; S] =
                 std::array::from_fn(|s| [buffer.triangles(s, column, row), buffer.triangles(s, column, row + 1)]);
             let first = pixels[0][0].as_array()[0];
             let differs = pixels.iter().flatten().fold(u32x8::ZERO, |all, p| all | (*p ^ u32x8::splat(first)));
-            let origin = |quad: usize| [(column * SHADED_BLOCK + quad * 2) as u16, row as u16];
+            let origin = |quad: usize| [(column * PART + quad * 2) as u16, row as u16];
             if differs != u32x8::ZERO {
                 (0..4).for_each(|quad| gather_quad(&pixels, quad, origin(quad), seen));
             } else if first != NONE {
@@ -42,6 +43,19 @@ pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<S
             }
         }
     }
+}
+
+/// The lane column and the first row of each part, block by block.
+fn parts(num_columns: usize, num_rows: usize) -> impl Iterator<Item = (usize, usize)> {
+    const ACROSS: usize = SHADED_BLOCK / PART;
+    let [blocks_across, blocks_down] = [num_columns, num_rows.div_ceil(PART)].map(|parts| parts.div_ceil(ACROSS));
+    (0..blocks_across * blocks_down * ACROSS * ACROSS)
+        .map(move |i| {
+            let (block, part) = (i / (ACROSS * ACROSS), i % (ACROSS * ACROSS));
+            let [column, row] = [block % blocks_across, block / blocks_across].map(|c| c * ACROSS);
+            (column + part % ACROSS, (row + part / ACROSS) * PART)
+        })
+        .filter(move |&(column, row)| column < num_columns && row < num_rows)
 }
 
 /// Lists the triangles of one quad of two rows of eight pixels, in order.

@@ -40,10 +40,7 @@ use sweep::{Grid, MOST_LINES, Profile};
 pub const MAX_ROWS: f32 = 512.0;
 
 /// Most pixels of a patch.
-pub const MOST_PIXELS: usize = 64;
-
-/// Vectors of pixels that hold them.
-const MOST_VECTORS: usize = MOST_PIXELS / 8;
+pub const MOST_PIXELS: usize = 256;
 
 /// Lines across the widest ellipse of a patch for each that the settings ask for, unless that puts them farther apart than
 /// [`WIDEST`]; and the fewest. Fewer than texels serve, since a line's colours are interpolated.
@@ -72,6 +69,7 @@ pub fn picture_bins(settings: &Settings, is_lit: bool) -> f32 {
 pub struct Scratch {
     unlit: Profile<3>,
     lit: Profile<6>,
+    picked: Vec<PixelLanes>,
     conics: Vec<Conics>,
     kernels: Vec<Kernel>,
     totals: Vec<Totals>,
@@ -145,11 +143,12 @@ impl Patches<'_> {
         scratch: &mut Scratch,
         found: &mut [Filtered],
     ) -> Option<u64> {
-        let Scratch { unlit, lit, conics, kernels, totals } = scratch;
+        let Scratch { unlit, lit, picked, conics, kernels, totals } = scratch;
         // Picks ascend: only these vectors hold any.
         let first_vector = usize::from(picks[0] / 8);
         let pixels = &self.pixels[first_vector..=usize::from(picks[picks.len() - 1] / 8)];
-        let picked = &masks(picks, first_vector)[..pixels.len()];
+        masks(picks, first_vector, pixels.len(), picked);
+        let picked = picked.as_slice();
         let (index, middle) = self.choose_level(pixels, picked, picks.len(), !lights.is_empty())?;
         let texels = self.surface.texels_per_repeat(index);
         conics.clear();
@@ -160,10 +159,13 @@ impl Patches<'_> {
         let frame = Frame::new(self.surface, index, middle, a < c);
         let frame = if picks.len() > 1 { frame.fit(pixels, conics, picked)? } else { frame };
         kernels.clear();
-        for (vector, (pixels, conics)) in pixels.iter().zip(conics).enumerate() {
+        let mut left = picks;
+        for (vector, (pixels, conics)) in (first_vector..).zip(pixels.iter().zip(conics)) {
             let lanes = frame.kernels(pixels, conics);
-            let here = picks.iter().filter(|pick| usize::from(**pick / 8) == first_vector + vector);
-            kernels.extend(here.map(|pick| lanes.lane(usize::from(pick % 8))));
+            let num_here = left.iter().take_while(|pick| usize::from(**pick / 8) == vector).count();
+            let (here, beyond) = left.split_at(num_here);
+            kernels.extend(here.iter().map(|pick| lanes.lane(usize::from(pick % 8))));
+            left = beyond;
         }
         let extent = Extent::of(kernels, frame.depth);
         let depth = frame.greatest_depth(extent.xi);
@@ -237,11 +239,17 @@ fn blur(level: usize) -> f32 {
     1.0 - 0.25_f32.powi(level as i32)
 }
 
-/// All bits of the lanes that are picked, from a vector on.
-fn masks(picks: &[u8], first_vector: usize) -> [PixelLanes; MOST_VECTORS] {
-    let mut bits = [[0_u32; 8]; MOST_VECTORS];
-    picks.iter().for_each(|pick| bits[usize::from(pick / 8) - first_vector][usize::from(pick % 8)] = u32::MAX);
-    bits.map(|lanes| PixelLanes::new(lanes.map(f32::from_bits)))
+/// All bits of the lanes that are picked, for so many vectors from the first one on.
+fn masks(picks: &[u8], first_vector: usize, num_vectors: usize, masks: &mut Vec<PixelLanes>) {
+    masks.clear();
+    let mut picks = picks.iter().map(|pick| usize::from(*pick)).peekable();
+    masks.extend((first_vector..first_vector + num_vectors).map(|vector| {
+        let mut bits = [0; 8];
+        while let Some(pick) = picks.next_if(|pick| pick / 8 == vector) {
+            bits[pick % 8] = u32::MAX;
+        }
+        PixelLanes::new(bits.map(f32::from_bits))
+    }));
 }
 
 impl Extent {
