@@ -12,7 +12,7 @@ use crate::texture::{FULL_F32, Surface};
 const TEXELS_ACROSS: f32 = 3.0;
 
 /// Most texels along the longer axis: a thin footprint at the horizon takes a coarser table.
-const TEXELS_ALONG: f32 = 64.0;
+const TEXELS_ALONG: f32 = 32.0;
 
 /// Texels of the finest table across a footprint where the tables begin to count, where sweeps lose nothing by their levels
 /// and where they do.
