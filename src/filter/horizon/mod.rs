@@ -37,7 +37,7 @@ use pixels::Conics;
 use sweep::{Grid, MOST_LINES, Profile};
 
 /// Most rows of a pixel's sweep; a longer one takes a coarser level. Bounds the time of a pixel for any input.
-pub const MAX_ROWS: f32 = 512.0;
+pub const MAX_ROWS: f32 = 1024.0;
 
 /// Most pixels of a patch.
 pub const MOST_PIXELS: usize = 256;
