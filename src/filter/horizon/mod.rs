@@ -23,6 +23,7 @@ mod frame;
 mod kernel;
 mod pixels;
 mod sweep;
+mod walk;
 
 pub use pixels::PixelFootprints;
 

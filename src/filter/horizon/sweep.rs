@@ -6,9 +6,10 @@
 
 use super::frame::Frame;
 use super::kernel::Kernel;
+use super::walk::Walk;
 use crate::filter::unpack_normals;
 use crate::simd::{
-    LineBlend, LineLanes, TexelLanes, halves, high_halves, i32x16, join, line_lanes, line_mask, low_halves, pick_words,
+    LineBlend, LineLanes, TexelLanes, halves, high_halves, join, low_halves, pick_words,
 };
 use crate::texture::FULL_F32;
 
@@ -67,9 +68,10 @@ impl Grid<'_> {
 
 /// Texels of a group of lines, one of each.
 #[derive(Clone, Copy)]
-struct Texels<const CHANNELS: usize> {
-    values: [LineLanes; CHANNELS],
-    place: LineLanes,
+pub(super) struct Texels<const CHANNELS: usize> {
+    pub(super) values: [LineLanes; CHANNELS],
+    /// Where they are seen, in bins from the grid's first.
+    pub(super) place: LineLanes,
 }
 
 /// Eight lanes of a row of line values.
@@ -98,7 +100,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let end_bin = (bin_at(exit).ceil() as usize).clamp(first_bin + 1, grid.num_bins);
         let lines = Lines::new(grid, group * GROUP);
         let [start, end] = [first_bin, end_bin].map(|bin| grid.begin + bin as f32 * grid.step);
-        let mut walk = Walk::<CHANNELS>::new(grid, group * GROUP, [first_bin, end_bin]);
+        let mut walk = Walk::<CHANNELS>::new(grid.num_lines, group * GROUP, [first_bin, end_bin]);
         let first_row = lines.row_before(start);
         // The deepest relief of the last row is seen behind all bins.
         let end_row = first_row + lines.rows_between(start, end);
@@ -107,12 +109,14 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         // Rows are read ahead, so that no branch on what they show waits for memory. None of the first ones can be the last.
         let mut read = [last; READ_AHEAD];
         let mut num_read = ((end - start) as usize).clamp(1, READ_AHEAD);
-        while !walk.is_done && row < end_row {
+        while !walk.is_done() && row < end_row {
             lines.read(row, &mut read[..num_read]);
+            let mut before = &last;
             for next in &read[..num_read] {
-                walk.pass(&last, next, &mut self.bins);
-                last = *next;
+                walk.pass(before, next, &mut self.bins);
+                before = next;
             }
+            last = read[num_read - 1];
             row += num_read as i32;
             num_read = READ_AHEAD / 4;
         }
@@ -121,110 +125,16 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
     }
 }
 
-/// A group of lines on its way.
-struct Walk<const CHANNELS: usize> {
-    /// `M`, and the end of each line's bin.
-    record: LineLanes,
-    bin_end: LineLanes,
-    /// Colour times length seen in the bin.
-    sums: [LineLanes; CHANNELS],
-    bins: i32x16,
-    /// The first line's place in a row of the profile, the bin where lines end, and whether all have.
-    at: usize,
-    end_bin: i32,
-    is_done: bool,
-    step: f32,
-    inverse_step: f32,
-}
-
-impl<const CHANNELS: usize> Walk<CHANNELS> {
-    fn new(grid: &Grid, at: usize, [first_bin, end_bin]: [usize; 2]) -> Self {
-        let start = grid.begin + first_bin as f32 * grid.step;
-        // Lines beyond the grid's last see nothing.
-        let num_lines = (grid.num_lines - at).min(GROUP);
-        let (mut bin_end, mut bins) = ([f32::MAX; GROUP], [end_bin as i32; GROUP]);
-        bin_end[..num_lines].fill(start + grid.step);
-        bins[..num_lines].fill(first_bin as i32);
-        Self {
-            // No relief of the first row is seen beyond it.
-            record: LineLanes::splat(start),
-            bin_end: LineLanes::new(bin_end),
-            sums: [LineLanes::ZERO; CHANNELS],
-            bins: i32x16::new(bins),
-            at,
-            end_bin: end_bin as i32,
-            is_done: false,
-            step: grid.step,
-            inverse_step: 1.0 / grid.step,
-        }
-    }
-
-    /// Adds what is seen beyond the record of the segment between two rows.
-    #[inline(always)]
-    fn pass(&mut self, last: &Texels<CHANNELS>, next: &Texels<CHANNELS>, bins: &mut [[Row; CHANNELS]]) {
-        let new_record = self.record.fast_max(next.place);
-        let inverse = LineLanes::ONE / (next.place - last.place).fast_max(LineLanes::splat(1e-6));
-        loop {
-            let to = new_record.fast_min(self.bin_end);
-            // Where the middle of the visible part lies between the last texel (0) and the next one (1).
-            let middle = ((self.record + to) * 0.5 - last.place) * inverse;
-            let length = to - self.record;
-            for i in 0..CHANNELS {
-                self.sums[i] += (last.values[i] + (next.values[i] - last.values[i]) * middle) * length;
-            }
-            self.record = to;
-            let is_full = to.simd_ge(self.bin_end);
-            if !is_full.any() {
-                break;
-            }
-            self.write(is_full, bins);
-        }
-    }
-
-    /// Writes the bins of the lines that have passed their end: neighbours that pass together are in the same bin mostly.
-    #[inline(always)]
-    fn write(&mut self, is_full: LineLanes, bins: &mut [[Row; CHANNELS]]) {
-        let means = self.sums.map(|sum| sum * self.inverse_step);
-        self.sums = self.sums.map(|sum| sum & !is_full);
-        let mut left = is_full;
-        let mut bits = left.to_bitmask();
-        while bits != 0 {
-            let number = self.bins.as_array()[bits.trailing_zeros() as usize & (GROUP - 1)];
-            let is_same = line_lanes(self.bins.simd_eq(i32x16::splat(number))) & left;
-            let bin = &mut bins[number as usize];
-            for i in 0..CHANNELS {
-                let row: &mut [f32; GROUP] = (&mut bin[i][self.at..self.at + GROUP]).try_into().expect("a slice of a group");
-                *row = is_same.select(means[i], LineLanes::new(*row)).to_array();
-            }
-            left &= !is_same;
-            bits = left.to_bitmask();
-        }
-        self.bins -= line_mask(is_full);
-        let is_done = line_lanes(self.bins.simd_ge(i32x16::splat(self.end_bin)));
-        self.bin_end =
-            is_done.select(LineLanes::splat(f32::MAX), self.bin_end + (is_full & LineLanes::splat(self.step)));
-        self.is_done = is_done.all();
-    }
-
-    /// Gives bins that rounding has left open the last colour.
-    fn finish(&mut self, last: &Texels<CHANNELS>, bins: &mut [[Row; CHANNELS]]) {
-        if self.is_done {
-            return;
-        }
-        for lane in 0..GROUP {
-            for bin in &mut bins[self.bins.as_array()[lane] as usize..self.end_bin as usize] {
-                (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = last.values[i].as_array()[lane]);
-            }
-        }
-    }
-}
-
 /// A group of lines of a grid.
 struct Lines<'a> {
     frame: &'a Frame<'a>,
     xi: LineLanes,
-    /// Rows down to the deepest relief in the middle of each line.
+    /// Rows down to the deepest relief in the middle of each line, and as many bins.
     depth: LineLanes,
+    depth_bins: LineLanes,
+    /// Bins a row, and bins from the middle to the first one.
+    scale: f32,
+    begin: f32,
     /// The middle's row in the walking direction, and whether that is up (1) or down (-1).
     middle: f32,
     sign: i32,
@@ -235,7 +145,9 @@ impl<'a> Lines<'a> {
         let frame = grid.frame;
         let xi = (line_indices() + first as f32) * grid.spacing + grid.first;
         let depth = xi * frame.tilt + frame.depth;
-        Self { frame, xi, depth, middle: frame.toward * frame.origin[1], sign: frame.toward as i32 }
+        let scale = 1.0 / grid.step;
+        let (depth_bins, begin) = (depth * scale, grid.begin * scale);
+        Self { frame, xi, depth, depth_bins, scale, begin, middle: frame.toward * frame.origin[1], sign: frame.toward as i32 }
     }
 
     /// The last texel row at or before a seen place, in the walking direction.
@@ -308,7 +220,7 @@ impl<'a> Lines<'a> {
             values[CHANNELS - 1] = LineLanes::ONE;
         }
         let down = LineLanes::ONE - high_halves(blue_height) * (1.0 / FULL_F32);
-        let place = (LineLanes::splat(q) - down * self.depth) / (down * growth + 1.0);
+        let place = (LineLanes::splat(q * self.scale) - down * self.depth_bins) / (down * growth + 1.0) - self.begin;
         Texels { values, place }
     }
 }
