@@ -194,8 +194,8 @@ impl LineBlend {
     #[must_use]
     #[inline(always)]
     pub fn new(part: f32x16) -> Self {
-        let parts: [f32x8; 2] = wide::bytemuck::cast(part);
-        Self(parts.map(Blend::new))
+        let part: u32x16 = wide::bytemuck::cast((part * 32767.0).fast_trunc_int());
+        Self(halves(part | part << 16_u32).map(|half| Blend(wide::bytemuck::cast(half))))
     }
 
     /// See [`Blend::mix`].

@@ -62,7 +62,7 @@ const PIXEL_BINS: f32 = 256.0;
 /// Bins along the shortest ellipse of a patch that serve a picture. Lights are asked for each bin, so they need more.
 #[must_use]
 pub fn picture_bins(settings: &Settings, is_lit: bool) -> f32 {
-    (settings.lines as f32 * if is_lit { 1.6 } else { 0.6 }).max(5.0)
+    (settings.lines as f32 * if is_lit { 1.6 } else { 0.5 }).max(5.0)
 }
 
 /// Buffers of sweeps, kept between them.
