@@ -127,7 +127,7 @@ pub mod shade;
 pub mod simd;
 
 pub use error::{Error, Result};
-pub use filter::{Footprint, seen_color};
+pub use filter::{Footprint, ewa_color, seen_color};
 pub use frame::Frame;
 pub use render::{Renderer, Stats, render};
 pub use scene::{Camera, Light, Material, Mesh, Scene};

@@ -1,6 +1,7 @@
 //! How a frame is drawn. Plain data: every field may be set alone, the rest comes from [`Settings::default`].
 
 use crate::error::{Error, Result};
+use crate::filter::RECONSTRUCTION;
 
 /// Which texels make up a pixel's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -104,8 +105,14 @@ pub struct Settings {
     /// The paper's formulas as meant or as printed. Default: [`Formulas::Meant`].
     pub formulas: Formulas,
     /// The mip level is chosen so that an ellipse holds at most this many texels; 0: always the base level, as in the
-    /// paper. Used by `Ewa` and `Visible`. Default: 256.
+    /// paper. Used by `Ewa`, which takes a level coarser still if its texels sample the Gaussian well, and `Visible`.
+    /// Default: 256.
     pub texel_budget: u32,
+    /// Where `Ewa` cuts its Gaussian `exp(-2 r^2)`, in pixels, 1 to 1.5: 1 is the paper's ellipse. Default: 1.
+    pub cut: f32,
+    /// What `Ewa` adds to A and C of formula (1) for the base level's texels, in square texels, 0.25 to 1: four times the
+    /// variance of what interpolates between them. Default: 2/3, bilinear interpolation; 1 is Heckbert's.
+    pub texel_kernel: f32,
     /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
     pub max_anisotropy: f32,
     /// Longest difference of formula (3) over that of (2) that `Visible` takes for a slope of the relief; a longer one is
@@ -147,6 +154,8 @@ impl Default for Settings {
             derivatives: Derivatives::Relief,
             formulas: Formulas::Meant,
             texel_budget: 256,
+            cut: 1.0,
+            texel_kernel: RECONSTRUCTION,
             max_anisotropy: 64.0,
             max_stretch: 4.0,
             samples: 64,
@@ -199,6 +208,12 @@ impl Settings {
         }
         if !(self.tile_size.is_power_of_two() && (8..=256).contains(&self.tile_size)) {
             return Err(Error::setting("tile_size", format!("{} is not 8, 16, 32, 64, 128 or 256", self.tile_size)));
+        }
+        if !(1.0..=1.5).contains(&self.cut) {
+            return Err(Error::setting("cut", format!("{} is not within 1 to 1.5", self.cut)));
+        }
+        if !(0.25..=1.0).contains(&self.texel_kernel) {
+            return Err(Error::setting("texel_kernel", format!("{} is not within 0.25 to 1", self.texel_kernel)));
         }
         if !(1.0..=1e6).contains(&self.max_anisotropy) {
             return Err(Error::setting("max_anisotropy", format!("{} is not within 1 to 1e6", self.max_anisotropy)));

@@ -308,6 +308,26 @@ proptest! {
     }
 
     #[test]
+    fn whole_ellipse_in_one_pass_is_the_references(made in any_maps(), pixel in pixel(0.3, 2.0)) {
+        let case = Case::new(made.maps(), &pixel);
+        let (conic, center) = (case.conic(), case.center());
+        let [short, long] = case.ellipse.squared_axes();
+        let tie = f64::from(1e-5 * (1.0 + long / short));
+        let texels = texels(&conic, center, tie);
+        // A texel on the edge may belong to one of the two.
+        if texels.iter().all(|(_, r2)| (r2 - 1.0).abs() > tie) {
+            let inside: Vec<_> = texels.iter().filter(|(_, r2)| *r2 <= 1.0).map(|(texel, _)| *texel).collect();
+            let found = ewa::mean(&case.surface, &pixel.footprint, &base_level(Filter::Ewa)).0.color.map(unit);
+            if let Some(expected) = mean(&case.surface.levels[0], &inside, &conic, center) {
+                let error = (0..3).map(|i| (f64::from(found[i]) - expected[i]).abs()).fold(0.0, f64::max);
+                // The fitted Gaussian is off by 2e-5, at most 2e-4 of the least weight.
+                let bound = 3e-4 + f64::from(1e-6 * long / short);
+                prop_assert!(error < bound, "{found:?} {expected:?} {error} {bound}");
+            }
+        }
+    }
+
+    #[test]
     fn horizon_mean_is_the_references(made in any_maps(), pixel in pixel(0.5, 1.0)) {
         let surface = made.surface();
         let found = horizon::visible_mean(&surface, &pixel.footprint, pixel.displacement, &base_level(Filter::Horizon), None).0;

@@ -67,14 +67,16 @@ fn settings() -> impl Strategy<Value = Settings> {
         any::<[bool; 3]>(),
     );
     let limit = || prop_oneof![5 => 1.0_f32..80.0, 1 => number()];
-    let sizes = (side(), side(), count(), count(), count(), [limit(), limit()]);
+    let near_one = || prop_oneof![5 => 0.9_f32..1.1, 1 => number()];
+    let limits = [limit().boxed(), limit().boxed(), near_one().boxed(), near_one().boxed()];
+    let sizes = (side(), side(), count(), count(), count(), limits);
     let grids = (pick(&[1, 1, 4, 8, 0, 2, u32::MAX]), pick(&[8, 16, 32, 64, 256, 32, 8, 0, 7, 512, u32::MAX]));
     let texels = prop_oneof![0_u32..300, any::<u32>()];
     let region = prop_oneof![3 => Just(None), 1 => [side(), side(), side(), side()].prop_map(Some)];
     (modes, sizes, grids, texels, region).prop_map(
         |(
             (filter, visibility, derivatives, formulas, lighting, [parallax, far_field, cull_back_faces]),
-            (width, height, samples, lines, far_field_mib, [max_anisotropy, max_stretch]),
+            (width, height, samples, lines, far_field_mib, [max_anisotropy, max_stretch, cut, texel_kernel]),
             (msaa, tile_size),
             texel_budget,
             region,
@@ -88,6 +90,8 @@ fn settings() -> impl Strategy<Value = Settings> {
             derivatives,
             formulas,
             texel_budget,
+            cut,
+            texel_kernel,
             max_anisotropy,
             max_stretch,
             samples,

@@ -70,6 +70,12 @@ pub(crate) struct FilterOptions {
     /// [default: 256]
     #[arg(long, value_name = "N")]
     texel_budget: Option<u32>,
+    /// For --filter ewa: where the Gaussian is cut, in pixels, 1 to 1.5; 1 is the paper's ellipse [default: 1]
+    #[arg(long, value_name = "R", value_parser = values::number, allow_hyphen_values = true)]
+    cut: Option<f32>,
+    /// For --filter ewa: added to A and C of formula (1) for the texels' own kernel, 0.25 to 1 [default: 2/3]
+    #[arg(long, value_name = "S", value_parser = values::number, allow_hyphen_values = true)]
+    texel_kernel: Option<f32>,
     /// Longest ellipse, as the ratio of its axes, 1 to 1e6; longer ones are widened [default: 64]
     #[arg(long, value_name = "N", value_parser = values::number, allow_hyphen_values = true)]
     max_anisotropy: Option<f32>,
@@ -114,6 +120,8 @@ impl SettingsOptions {
             derivatives: filter.derivatives.unwrap_or(default.derivatives),
             formulas: filter.formulas.unwrap_or(default.formulas),
             texel_budget: filter.texel_budget.unwrap_or(default.texel_budget),
+            cut: filter.cut.unwrap_or(default.cut),
+            texel_kernel: filter.texel_kernel.unwrap_or(default.texel_kernel),
             max_anisotropy: filter.max_anisotropy.unwrap_or(default.max_anisotropy),
             max_stretch: filter.max_stretch.unwrap_or(default.max_stretch),
             samples: filter.samples.unwrap_or(default.samples),
@@ -148,6 +156,8 @@ impl From<&Settings> for SettingsOptions {
             derivatives: Some(settings.derivatives),
             formulas: Some(settings.formulas),
             texel_budget: Some(settings.texel_budget),
+            cut: Some(settings.cut),
+            texel_kernel: Some(settings.texel_kernel),
             max_anisotropy: Some(settings.max_anisotropy),
             max_stretch: Some(settings.max_stretch),
             samples: Some(settings.samples),
@@ -256,6 +266,8 @@ mod tests {
             derivatives: Derivatives::Flat,
             formulas: Formulas::Printed,
             texel_budget: 0,
+            cut: 1.25,
+            texel_kernel: 0.5,
             max_anisotropy: 8.0,
             max_stretch: 3.0,
             samples: 5,

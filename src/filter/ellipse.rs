@@ -55,11 +55,20 @@ impl Ellipse {
     /// The ellipse with its shorter axis widened to the longer over `max_anisotropy`, and at least to [`LEAST_AXIS`].
     #[must_use]
     pub fn bounded(self, max_anisotropy: f32) -> Self {
+        self.bounded_with_axes(max_anisotropy).0
+    }
+
+    /// [`bounded`](Self::bounded), and its [`squared_axes`](Self::squared_axes).
+    #[must_use]
+    pub fn bounded_with_axes(self, max_anisotropy: f32) -> (Self, [f32; 2]) {
         let Self { a, b, c, .. } = self;
         let [short, long] = self.squared_axes();
         let least = LEAST_AXIS * LEAST_AXIS;
         let long = long.max(least);
         let lift = ((long / (max_anisotropy * max_anisotropy)).max(least) - short).max(0.0);
+        if lift == 0.0 {
+            return (Self { f: long * short, ..self }, [short, long]);
+        }
         // The square of the short axis grows along its own direction, the eigenvector of `short`; a circle all around.
         let (a, b, c) = if long - short > 1e-6 * long {
             let share = lift / (long - short);
@@ -67,7 +76,7 @@ impl Ellipse {
         } else {
             (a + lift, b, c + lift)
         };
-        Self { a, b, c, f: long * (short + lift) }
+        (Self { a, b, c, f: long * (short + lift) }, [short + lift, long])
     }
 
     /// Squares of the shorter and the longer half axis in texels: the eigenvalues of `[[C, -B/2], [-B/2, A]]`.

@@ -19,7 +19,7 @@ pub use ellipse::{Ellipse, RECONSTRUCTION};
 pub use far_field::FarField;
 pub use footprint::{Corner, Differences, Footprint, at_pixel, differences, differences_for};
 pub use horizon::PixelFootprints;
-pub use seen::seen_color;
+pub use seen::{ewa_color, seen_color};
 pub use texel_set::{TexelRow, TexelSet};
 
 use crate::settings::Settings;

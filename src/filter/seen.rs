@@ -1,6 +1,6 @@
 //! The default filter on its own, for a renderer that has its own derivatives.
 
-use super::{Footprint, horizon};
+use super::{Footprint, ewa, horizon};
 use crate::relief::displacement;
 use crate::settings::Settings;
 use crate::simd::PixelLanes;
@@ -39,4 +39,23 @@ pub fn seen_color(surface: &Surface, footprint: &Footprint, view: [f32; 3], sett
     let reach = displacement(&view.map(PixelLanes::splat), surface.relief_depth).map(|lanes| lanes.as_array()[0]);
     let (filtered, _) = horizon::visible_mean(surface, footprint, reach, settings, None);
     filtered.color.map(|c| c * (surface.color_scale / FULL_F32))
+}
+
+/// The linear RGB of `surface` in a pixel by the elliptical weighted average, formula (1), relief left out of account.
+/// Of the settings `texel_budget`, `max_anisotropy`, `cut` and `texel_kernel` count.
+///
+/// ```
+/// use basrelief::texture::{ColorImage, Surface, SurfaceMaps};
+/// use basrelief::{Footprint, Settings, ewa_color};
+///
+/// let stripes = ColorImage::from_fn(64, 64, |x, _| if x % 16 < 8 { [1.0; 3] } else { [0.0; 3] });
+/// let surface = Surface::new(SurfaceMaps { albedo: Some(stripes), ..SurfaceMaps::default() })?;
+/// let footprint = Footprint { center: [0.5, 0.5], dx: [2.0, 0.0], dy: [0.0, 0.1] };
+/// let [red, _, _] = ewa_color(&surface, &footprint, &Settings::default());
+/// assert!((0.45..0.55).contains(&red));
+/// # Ok::<(), basrelief::Error>(())
+/// ```
+#[must_use]
+pub fn ewa_color(surface: &Surface, footprint: &Footprint, settings: &Settings) -> [f32; 3] {
+    ewa::mean(surface, footprint, settings).0.color.map(|c| c * (surface.color_scale / FULL_F32))
 }

@@ -48,14 +48,15 @@ pub fn same_for_same_ellipse(surface: &Surface, pixel: &Pixel, settings: &Settin
     Ok(())
 }
 
-/// Relief of one height everywhere hides nothing: `Visible` is `Ewa`, to the bit, whatever the view.
+/// Relief of one height everywhere hides nothing: `Visible` is what it is from straight above, to the bit, whatever the view.
 ///
 /// # Errors
 /// Says what broke, or why the maps are no surface.
 pub fn flat_relief_hides_nothing(maps: &SurfaceMaps, height: u16, pixel: &Pixel, settings: &Settings) -> Checked {
     let flat = HeightImage { width: 1, height: 1, texels: vec![height] };
     let surface = Surface::new(SurfaceMaps { height: Some(flat), ..maps.clone() }).map_err(|e| e.to_string())?;
-    let with = |filter| filtered(&surface, pixel, &Settings { filter, ..settings.clone() });
-    let (all, visible) = (with(Filter::Ewa), with(Filter::Visible));
+    let settings = Settings { filter: Filter::Visible, ..settings.clone() };
+    let from = |displacement| filtered(&surface, &Pixel { displacement, ..*pixel }, &settings);
+    let (all, visible) = (from([0.0; 2]), from(pixel.displacement));
     ensure(all == visible, || format!("{visible:?} is left of {all:?} at height {height}"))
 }

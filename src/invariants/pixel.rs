@@ -1,7 +1,7 @@
 //! A pixel in texture space, and what must hold of its ellipse and colour.
 
 use super::{Checked, ensure};
-use crate::filter::{self, Differences, Ellipse, Footprint, RECONSTRUCTION, TexelSet, horizon, isotropic};
+use crate::filter::{self, Differences, Ellipse, Footprint, RECONSTRUCTION, TexelSet, ewa, horizon, isotropic};
 use crate::relief::{MAX_SLOPE, finite};
 use crate::settings::{Filter, Formulas, Settings};
 use crate::simd::PixelLanes;
@@ -44,15 +44,15 @@ pub(super) fn on_base_level(surface: &Surface, pixel: &Pixel, settings: &Setting
 #[must_use]
 pub fn filtered(surface: &Surface, pixel: &Pixel, settings: &Settings) -> [f32; 3] {
     let Pixel { footprint, displacement } = pixel;
-    let ellipse_mean =
-        |hidden_by| filter::ellipse_mean(surface, footprint, hidden_by, settings, &mut TexelSet::default()).0;
     let mean = match settings.filter {
         Filter::Nearest => isotropic::nearest(surface, footprint.center),
         Filter::Trilinear => {
             isotropic::trilinear(surface, footprint.center, isotropic::longest_side(surface, footprint))
         }
-        Filter::Ewa => ellipse_mean(None),
-        Filter::Visible => ellipse_mean(Some(*displacement)),
+        Filter::Ewa => ewa::mean(surface, footprint, settings).0,
+        Filter::Visible => {
+            filter::ellipse_mean(surface, footprint, Some(*displacement), settings, &mut TexelSet::default()).0
+        }
         Filter::Horizon => horizon::visible_mean(surface, footprint, *displacement, settings, None).0,
         Filter::Bilinear | Filter::Parallax | Filter::Truth => isotropic::bilinear(surface, 0, footprint.center),
     };
@@ -118,8 +118,9 @@ pub fn anisotropy_limit_only_limits(surface: &Surface, pixel: &Pixel, settings: 
     ensure(!is_below || a == b, || format!("{a:?} with {limit}, {b:?} with a higher limit"))
 }
 
-/// The work of one pixel is bounded, whatever its footprint: `Ewa` and `Visible` test at most the texel budget's texels, or
-/// a million where it is 0, up to an edge's; they take no more than they tested, and the coarsest level is one texel.
+/// The work of one pixel is bounded, whatever its footprint: `Visible` tests at most the texel budget's texels, or a million
+/// where it is 0, up to an edge's, and takes no more than it tested; `Ewa` reads at most those of the rows of equal length
+/// that hold as many. The coarsest level is one texel.
 ///
 /// # Errors
 /// Says what broke.
@@ -137,5 +138,8 @@ pub fn work_is_bounded(surface: &Surface, pixel: &Pixel, settings: &Settings) ->
             format!("{tested} texels tested, {taken} taken, of a budget of {most} at level {index}")
         })?;
     }
-    Ok(())
+    // An ellipse cut at 1.5 has 2.25 times the area, rows of equal length hold 4 / pi of it, vectors end on both sides.
+    let (_, read) = ewa::mean(surface, footprint, settings);
+    let edge = 40 * (ellipse.squared_axes()[1].sqrt() as u64 + 8);
+    ensure(index + 1 == surface.levels.len() || read <= 3 * most + edge, || format!("{read} texels read of {most}"))
 }

@@ -86,9 +86,13 @@ impl<'a> QuadShader<'a> {
                 Filter::Trilinear => {
                     isotropic::trilinear(surface, footprint.center, isotropic::longest_side(surface, &footprint))
                 }
+                Filter::Ewa => {
+                    let (mean, num_read) = filter::ewa::mean(surface, &footprint, self.settings);
+                    num_texels = num_texels.map(|num| num + num_read);
+                    mean
+                }
                 _ => {
-                    let hides = field.is_some() && self.settings.filter == Filter::Visible;
-                    let reach = hides.then(|| reach.map(|lanes| lanes.as_array()[lane]));
+                    let reach = field.map(|_| reach.map(|lanes| lanes.as_array()[lane]));
                     let (mean, counts) = filter::ellipse_mean(surface, &footprint, reach, self.settings, &mut set);
                     num_texels = [num_texels[0] + counts[0], num_texels[1] + counts[1]];
                     mean

@@ -78,10 +78,16 @@ impl Level {
         }
     }
 
+    /// Where a row of the endless pattern starts among all words.
+    #[inline(always)]
+    pub(crate) fn row_start(&self, y: i32) -> usize {
+        wrap_index(self.wrap, y, self.height) * self.stride() * self.num_planes
+    }
+
     /// Where the run of up to [`APRON`] texels that begins at a column and row of the endless pattern starts among all words.
     #[inline(always)]
     pub(crate) fn start_at(&self, x: i32, y: i32) -> usize {
-        wrap_index(self.wrap, y, self.height) * self.stride() * self.num_planes + self.run_start(x)
+        self.row_start(y) + self.run_start(x)
     }
 
     /// All words; see [`Self::start_at`].

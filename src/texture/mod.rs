@@ -12,7 +12,7 @@ mod surface;
 
 pub use color::{linear_from_srgb, linear_from_srgb8, srgb_from_linear, srgb8_from_linear};
 pub use image::{ColorImage, HeightImage, NormalImage};
+pub(crate) use level::{APRON, FULL_F32, unpack_normal, wrap_index};
 pub use level::{FULL, Level};
-pub(crate) use level::{FULL_F32, unpack_normal, wrap_index};
 pub(crate) use pyramid::box_taps;
 pub use surface::{Surface, SurfaceMaps, Wrap};
