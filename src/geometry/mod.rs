@@ -15,6 +15,7 @@ mod projection;
 mod samples;
 mod setup;
 
+pub(crate) use plane::BasisLanes;
 pub use plane::{Plane, ScreenBasis};
 pub use projection::{Projection, SUBPIXEL_BITS, ScreenVertex};
 pub use samples::{offset_bounds, pixel_range, sample_offsets};

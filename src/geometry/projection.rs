@@ -6,6 +6,7 @@
 
 use crate::scene::Camera;
 use crate::settings::Settings;
+use crate::simd::f64x8;
 use glam::Vec3;
 
 /// Fractional bits of snapped coordinates: 1/256 pixel, what GPUs use.
@@ -79,16 +80,19 @@ impl Projection {
         ScreenVertex { view, snapped }
     }
 
-    /// The ray from the eye to a world position, world units.
-    #[must_use]
-    pub fn ray(&self, position: Vec3) -> [f64; 3] {
-        std::array::from_fn(|i| f64::from(position[i]) - f64::from(self.eye[i]))
+    /// The rays from the eye to eight world positions, world units.
+    #[inline]
+    pub(crate) fn rays(&self, position: [f64x8; 3]) -> [f64x8; 3] {
+        std::array::from_fn(|i| position[i] - f64x8::splat(f64::from(self.eye[i])))
     }
 
-    /// View space of a ray from the eye, without the rounding of [`Projection::vertex`].
-    #[must_use]
-    pub fn view_from_ray(&self, ray: [f64; 3]) -> [f64; 3] {
-        self.axes.map(|axis| (0..3).map(|i| f64::from(axis[i]) * ray[i]).sum())
+    /// View space of eight rays from the eye, without the rounding of [`Projection::vertex`].
+    #[inline]
+    pub(crate) fn views_from_rays(&self, ray: [f64x8; 3]) -> [f64x8; 3] {
+        self.axes.map(|axis| {
+            let [x, y, z] = [0, 1, 2].map(|i| f64x8::splat(f64::from(axis[i])) * ray[i]);
+            x + y + z
+        })
     }
 
     /// Snapped screen coordinates of a view-space point within the guard band, `w > 0`.

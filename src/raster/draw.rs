@@ -3,6 +3,7 @@
 //! Each tile owns its rows of the frame, so tiles run in parallel without locks. What a tile needs while it is drawn lies in
 //! a [`Scratch`], taken from a pool and given back, so a steady frame allocates nothing for tiles or triangles.
 
+use super::attributes::PlaneMaker;
 use super::bin::{Bins, TileGrid};
 use super::block::{QuadBlock, SHADED_BLOCK};
 use super::edge::Rect;
@@ -11,7 +12,7 @@ use super::quad::{AttributePlanes, QuadPair};
 use super::scratch::{Borrowed, Scratch};
 use super::tile::NONE;
 use crate::frame::Frame;
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, ScreenTriangle};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::simd::PixelLanes;
@@ -151,24 +152,26 @@ impl Painter<'_> {
 
     /// Makes the attribute planes of the triangles seen.
     fn find_planes(&self, scratch: &mut Scratch) {
-        let Scratch { list, quads, slots, planes, materials, .. } = scratch;
+        let Scratch { list, quads, slots, planes, triangles, materials, .. } = scratch;
         slots.clear();
         slots.resize(list.len(), NONE);
+        triangles.clear();
         materials.clear();
         for quad in quads.iter_mut() {
             let slot = &mut slots[quad.triangle as usize];
             if *slot == NONE {
                 *slot = materials.len() as u32;
-                if planes.len() == materials.len() {
-                    planes.push(AttributePlanes::default());
-                }
-                let triangle = self.geometry.triangle(list[quad.triangle as usize]);
-                planes[materials.len()].set(self.geometry, triangle, self.scene, self.settings);
-                materials.push(self.scene.meshes[triangle.mesh as usize].material as u32);
+                let ScreenTriangle { mesh, triangle, .. } = *self.geometry.triangle(list[quad.triangle as usize]);
+                triangles.push([mesh, triangle]);
+                materials.push(self.scene.meshes[mesh as usize].material as u32);
             }
             quad.triangle = *slot;
             quad.material = materials[*slot as usize];
         }
+        if planes.len() < triangles.len() {
+            planes.resize_with(triangles.len(), AttributePlanes::default);
+        }
+        PlaneMaker::new(self.geometry, self.scene, self.settings).fill(&mut planes[..triangles.len()], triangles);
     }
 
     /// Shades the quads block by block and adds their colours to the pixels.

@@ -8,6 +8,7 @@
 
 mod patches;
 mod quads;
+mod square;
 mod tables;
 
 use crate::error::Result;
