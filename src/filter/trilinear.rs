@@ -5,7 +5,7 @@
 
 use super::footprint::MAX_LENGTH;
 use super::{Differences, isotropic};
-use crate::simd::{PixelLanes, high_half, low_half, u32x8};
+use crate::simd::{PixelLanes, high_half, i32x8, low_half, u32x8};
 use crate::texture::Surface;
 
 /// Farthest texel from the pattern's first: numbers up to there, and their neighbours, fit 32 bits.
@@ -35,14 +35,18 @@ pub fn colors(surface: &Surface, place: [PixelLanes; 2], size: PixelLanes) -> [P
 #[must_use]
 pub fn longest_side(surface: &Surface, differences: &Differences) -> PixelLanes {
     let texels = surface.texels_per_repeat(0);
-    let length = |[u, v]: [PixelLanes; 2]| {
+    let squared = |[u, v]: [PixelLanes; 2]| {
         let longest = u.abs().fast_max(v.abs());
         let is_long = longest.simd_gt(PixelLanes::splat(MAX_LENGTH));
-        let scale = is_long.select(PixelLanes::splat(MAX_LENGTH) / longest, PixelLanes::ONE);
+        let scale = if is_long.any() {
+            is_long.select(PixelLanes::splat(MAX_LENGTH) / longest, PixelLanes::ONE)
+        } else {
+            PixelLanes::ONE
+        };
         let (u, v) = (u * scale * texels[0], v * scale * texels[1]);
-        (u * u + v * v).sqrt()
+        u * u + v * v
     };
-    length(differences.dx).fast_max(length(differences.dy))
+    squared(differences.dx).fast_max(squared(differences.dy)).sqrt()
 }
 
 /// The places, with 0 in place of what is not within 1e6 repeats.
@@ -52,11 +56,16 @@ pub fn bounded(place: [PixelLanes; 2]) -> [PixelLanes; 2] {
 }
 
 fn bilinear(surface: &Surface, levels: &[usize; 8], place: [PixelLanes; 2]) -> [PixelLanes; 3] {
-    let mut texels = [[0.0_f32; 8]; 2];
+    let mut sizes = [[0_i32; 8]; 2];
     for (lane, &level) in levels.iter().enumerate() {
-        [texels[0][lane], texels[1][lane]] = surface.texels_per_repeat(level);
+        let level = &surface.levels[level];
+        (sizes[0][lane], sizes[1][lane]) = (level.width as i32, level.height as i32);
     }
-    let at: [PixelLanes; 2] = std::array::from_fn(|axis| place[axis] * PixelLanes::new(texels[axis]) - 0.5);
+    let repeats = surface.repeats_stored as f32;
+    let at: [PixelLanes; 2] = std::array::from_fn(|axis| {
+        let texels_per_repeat = PixelLanes::from_i32x8(i32x8::new(sizes[axis])) / repeats;
+        place[axis] * texels_per_repeat - 0.5
+    });
     let floors = at.map(PixelLanes::floor);
     let [fx, fy] = [at[0] - floors[0], at[1] - floors[1]];
     let bound = PixelLanes::splat(FARTHEST);
@@ -66,9 +75,9 @@ fn bilinear(surface: &Surface, levels: &[usize; 8], place: [PixelLanes; 2]) -> [
     for lane in 0..8 {
         let level = &surface.levels[levels[lane]];
         let stride = level.stride();
+        let start = level.run_start(x[lane]);
         for row in 0..2 {
-            let start = level.start_at(x[lane], y[lane] + row as i32);
-            let run = &level.words()[start..start + stride + 2];
+            let run = &level.row(y[lane] + row as i32)[start..start + stride + 2];
             for plane in 0..2 {
                 words[plane][2 * row][lane] = run[plane * stride];
                 words[plane][2 * row + 1][lane] = run[plane * stride + 1];
