@@ -48,6 +48,7 @@ pub struct Footprint {
 
 /// Formula (2) or (3), as meant or as printed, in each quad of `uv` with the relief's `offset`.
 #[must_use]
+#[inline]
 pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Derivatives, Formulas)) -> Differences {
     let (derivatives, formulas) = which;
     if formulas == Formulas::Meant {
@@ -84,6 +85,7 @@ fn letter_by_letter(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Deri
 /// formula (3) as meant, a jump of the relief between two pixels (a difference more than `max_stretch` times as long as
 /// that of (2), in texture repeats) is not taken for the slope of a surface: there stands the difference of (2).
 #[must_use]
+#[inline]
 pub fn differences_for(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], settings: &Settings) -> Differences {
     let which = (settings.derivatives, settings.formulas);
     let displaced = differences(uv, offset, which);

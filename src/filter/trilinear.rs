@@ -33,6 +33,7 @@ pub fn colors(surface: &Surface, place: [PixelLanes; 2], size: PixelLanes) -> [P
 
 /// The longer derivatives of eight footprints in base texels; derivatives beyond 16 repeats are shortened.
 #[must_use]
+#[inline]
 pub fn longest_side(surface: &Surface, differences: &Differences) -> PixelLanes {
     let texels = surface.texels_per_repeat(0);
     let squared = |[u, v]: [PixelLanes; 2]| {
@@ -51,6 +52,7 @@ pub fn longest_side(surface: &Surface, differences: &Differences) -> PixelLanes 
 
 /// The places, with 0 in place of what is not within 1e6 repeats.
 #[must_use]
+#[inline]
 pub fn bounded(place: [PixelLanes; 2]) -> [PixelLanes; 2] {
     place.map(|c| c.abs().simd_le(PixelLanes::splat(1e6)).select(c, PixelLanes::ZERO))
 }

@@ -8,7 +8,7 @@ use super::bin::{Bins, TileGrid};
 use super::block::{QuadBlock, SHADED_BLOCK};
 use super::edge::Rect;
 use super::gather::{SeenQuad, gather};
-use super::quad::{AttributePlanes, QuadPair};
+use super::quad::{AttributePlanes, QuadPair, covered};
 use super::scratch::{Borrowed, Scratch};
 use super::tile::NONE;
 use crate::frame::Frame;
@@ -155,18 +155,19 @@ impl Painter<'_> {
         let Scratch { list, quads, slots, planes, triangles, materials, .. } = scratch;
         slots.clear();
         slots.resize(list.len(), NONE);
+        quads.iter().for_each(|quad| slots[quad.triangle as usize] = 0);
         triangles.clear();
         materials.clear();
+        // In the list's order, neighbours in the mesh are neighbours here and find their vertices in the cache.
+        for (slot, &index) in slots.iter_mut().zip(list.iter()).filter(|(slot, _)| **slot != NONE) {
+            *slot = triangles.len() as u32;
+            let ScreenTriangle { mesh, triangle, .. } = *self.geometry.triangle(index);
+            triangles.push([mesh, triangle]);
+            materials.push(self.scene.meshes[mesh as usize].material as u32);
+        }
         for quad in quads.iter_mut() {
-            let slot = &mut slots[quad.triangle as usize];
-            if *slot == NONE {
-                *slot = materials.len() as u32;
-                let ScreenTriangle { mesh, triangle, .. } = *self.geometry.triangle(list[quad.triangle as usize]);
-                triangles.push([mesh, triangle]);
-                materials.push(self.scene.meshes[mesh as usize].material as u32);
-            }
-            quad.triangle = *slot;
-            quad.material = materials[*slot as usize];
+            quad.triangle = slots[quad.triangle as usize];
+            quad.material = materials[quad.triangle as usize];
         }
         if planes.len() < triangles.len() {
             planes.resize_with(triangles.len(), AttributePlanes::default);
@@ -227,19 +228,14 @@ fn add(rows: &mut [&mut [Pixel]], pair: &[SeenQuad], share: f32, colors: &[Pixel
     let mut num = 0;
     for (i, quad) in pair.iter().enumerate() {
         let [x, y] = quad.origin.map(usize::from);
-        for half in 0..2 {
+        for lane in covered(u64::from(u32::from_le_bytes(quad.coverage))) {
             // Below the frame's last row there may be none, or an empty one.
-            let Some(row) = rows.get_mut(y + half).and_then(|row| row.get_mut(x..)) else { continue };
-            for (column, pixel) in row.iter_mut().take(2).enumerate() {
-                let lane = 2 * half + column;
-                let share = f32::from(quad.coverage[lane]) * share;
-                if share > 0.0 {
-                    let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);
-                    (0..3).for_each(|c| pixel[c] += color[c]);
-                    pixel[3] += share;
-                    num += 1;
-                }
-            }
+            let Some(pixel) = rows.get_mut(y + lane / 2).and_then(|row| row.get_mut(x + lane % 2)) else { continue };
+            let share = f32::from(quad.coverage[lane]) * share;
+            let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);
+            (0..3).for_each(|c| pixel[c] += color[c]);
+            pixel[3] += share;
+            num += 1;
         }
     }
     num

@@ -24,12 +24,13 @@ impl QuadShader<'_> {
     pub(super) fn trilinear(&self, ground: &Ground, block: &QuadBlock, colors: &mut Vec<[PixelLanes; 3]>) {
         let first = colors.len();
         let mut queue = Queue::default();
-        for (index, pair) in block.pairs().enumerate() {
-            colors.push([PixelLanes::ZERO; 3]);
+        colors.resize(first + block.num_pairs(), [PixelLanes::ZERO; 3]);
+        for index in 0..block.num_pairs() {
+            let pair = block.pair(index);
             let (place, differences) = self.hits(ground, &pair);
             let place = trilinear::bounded(place).map(PixelLanes::to_array);
             let size = trilinear::longest_side(ground.surface, &differences).to_array();
-            for lane in (0..8).filter(|lane| pair.coverage[*lane] > 0) {
+            for lane in pair.covered() {
                 let Queue { num, .. } = queue;
                 (queue.place[0][num], queue.place[1][num]) = (place[0][lane], place[1][lane]);
                 queue.size[num] = size[lane];
