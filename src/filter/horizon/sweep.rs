@@ -8,9 +8,7 @@ use super::frame::Frame;
 use super::kernel::Kernel;
 use super::walk::Walk;
 use crate::filter::unpack_normals;
-use crate::simd::{
-    LineBlend, LineLanes, TexelLanes, halves, high_halves, join, low_halves, pick_words,
-};
+use crate::simd::{LineBlend, LineLanes, TexelLanes, halves, high_halves, join, low_halves, pick_words};
 use crate::texture::FULL_F32;
 
 /// Most lines of a grid.
@@ -147,7 +145,16 @@ impl<'a> Lines<'a> {
         let depth = xi * frame.tilt + frame.depth;
         let scale = 1.0 / grid.step;
         let (depth_bins, begin) = (depth * scale, grid.begin * scale);
-        Self { frame, xi, depth, depth_bins, scale, begin, middle: frame.toward * frame.origin[1], sign: frame.toward as i32 }
+        Self {
+            frame,
+            xi,
+            depth,
+            depth_bins,
+            scale,
+            begin,
+            middle: frame.toward * frame.origin[1],
+            sign: frame.toward as i32,
+        }
     }
 
     /// The last texel row at or before a seen place, in the walking direction.
