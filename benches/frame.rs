@@ -9,7 +9,7 @@ const HEIGHT: u32 = 180;
 fn frames(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("frame");
     group.sample_size(10).throughput(Throughput::Elements(u64::from(WIDTH * HEIGHT)));
-    let base = Settings { width: WIDTH, height: HEIGHT, ..Settings::default() };
+    let base = Settings { width: WIDTH, height: HEIGHT, msaa: 1, ..Settings::default() };
     let with = |filter| Settings { filter, ..base.clone() };
     let cases = [
         ("trilinear", with(Filter::Trilinear)),
@@ -18,6 +18,7 @@ fn frames(criterion: &mut Criterion) {
         ("visible_exact", with(Filter::Visible)),
         ("visible_two_ended", Settings { visibility: Visibility::TwoEnded, ..with(Filter::Visible) }),
         ("horizon", with(Filter::Horizon)),
+        ("horizon_msaa4", Settings { msaa: 4, ..with(Filter::Horizon) }),
         ("horizon_4_lines", Settings { lines: 4, ..with(Filter::Horizon) }),
         ("horizon_without_tables", Settings { far_field: false, ..with(Filter::Horizon) }),
         ("horizon_lit", Settings { lighting: Lighting::Lit, ..with(Filter::Horizon) }),

@@ -132,7 +132,7 @@ pub struct Settings {
     pub lighting: Lighting,
     /// Whether triangles seen from behind (clockwise on the screen) are left out. Default: `false`.
     pub cull_back_faces: bool,
-    /// Coverage and depth samples a pixel: 1, 4 or 8. Shading stays once per pixel and triangle. Default: 1.
+    /// Coverage and depth samples a pixel: 1, 4 or 8. Shading stays once per pixel and triangle. Default: 4.
     pub msaa: u32,
     /// Side of a tile in pixels: 8 (drawn as 16, the side of a block of shading), 16, 32, 64, 128 or 256. The picture does
     /// not depend on it. Default: 32.
@@ -164,7 +164,7 @@ impl Default for Settings {
             far_field_mib: 32,
             lighting: Lighting::Unlit,
             cull_back_faces: false,
-            msaa: 1,
+            msaa: 4,
             tile_size: 32,
         }
     }

@@ -4,7 +4,7 @@
 //! For the same bytes on every machine: `a * b + c` and never `mul_add`, `1.0 / x` and never `recip`, sums of lanes in
 //! one fixed order ([`sum`]), minima and maxima by [`f32x8::fast_min`] and [`f32x8::fast_max`] on values that are not NaN.
 
-pub use wide::{f32x8, f32x16, i32x8, i32x16, u32x8, u32x16};
+pub use wide::{f32x8, f32x16, f64x8, i32x8, i32x16, u32x8, u32x16};
 
 /// Eight pixels: two 2x2 quads, lane `4 * quad + 2 * dy + dx`.
 pub type PixelLanes = f32x8;
@@ -115,6 +115,14 @@ fn pick_eight(words: [u32x8; 2], numbers: i32x8) -> u32x8 {
     let numbers = as_unsigned(numbers) & u32x8::splat(7);
     let [first, second] = words.map(|words| as_signed(words.shuffle(numbers)));
     as_unsigned(is_second.select(second, first))
+}
+
+/// The lanes in the order of the given numbers, 0 to 7.
+#[must_use]
+#[inline(always)]
+pub fn permute(values: f32x8, numbers: [u32; 8]) -> f32x8 {
+    let words: i32x8 = wide::bytemuck::cast(values);
+    lanes(words.shuffle(u32x8::new(numbers)))
 }
 
 /// The same bits as signed numbers.

@@ -220,8 +220,8 @@ fn stats_have_every_figure() {
     let folder = Folder::new();
     folder.succeeds("quad.obj --size 64x36 -o a.png --repeat 3 --threads 1 --filter nearest --stats stats.json");
     let stats = json(&fs::read(folder.path("stats.json")).unwrap());
-    let numbers = "frame_ms load_ms geometry_ms raster_ms shade_ms pixels_shaded triangles_in triangles_drawn texels_tested \
-                   texels_visible threads width height";
+    let numbers = "frame_ms load_ms geometry_ms raster_ms binning_ms coverage_ms attributes_ms shade_ms pixels_shaded quads_shaded \
+                   triangles_in triangles_drawn texels_tested texels_visible threads width height";
     for key in numbers.split_whitespace() {
         assert!(stats[key].as_f64().is_some_and(|value| value >= 0.0), "{key} in {stats}");
     }

@@ -20,7 +20,7 @@ fn clip_camera() -> Camera {
 }
 
 fn square(side: u32) -> Settings {
-    Settings { width: side, height: side, ..Settings::default() }
+    Settings { width: side, height: side, msaa: 1, ..Settings::default() }
 }
 
 // ---- dEQP-GLES3.functional.rasterization.fill_rules

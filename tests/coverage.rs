@@ -13,7 +13,7 @@ use proptest::prelude::*;
 type Corner = [f64; 3];
 
 fn settings(width: u32, height: u32) -> Settings {
-    Settings { width, height, ..Settings::default() }
+    Settings { width, height, msaa: 1, ..Settings::default() }
 }
 
 /// A field of view of 90 degrees: one pixel is `2 w / height` world units.

@@ -55,7 +55,7 @@ fn scene(wrap: Wrap, size: u32) -> Scene {
 }
 
 fn small(filter: Filter) -> Settings {
-    Settings { width: 45, height: 37, filter, samples: 4, texel_budget: 64, ..Settings::default() }
+    Settings { width: 45, height: 37, filter, samples: 4, texel_budget: 64, msaa: 1, ..Settings::default() }
 }
 
 /// A name, what lies beyond the textures' edges, texels a side of the floor's, and settings.
@@ -89,6 +89,9 @@ fn cases() -> Vec<Case> {
     let horizon = small(Filter::Horizon);
     add("4 lines", Wrap::Repeat, Settings { lines: 4, ..horizon.clone() });
     add("64 lines, near field", Wrap::Repeat, Settings { lines: 64, far_field: false, ..horizon.clone() });
+    let default = Settings { width: 45, height: 37, ..Settings::default() };
+    add("default", Wrap::Repeat, default.clone());
+    add("default, lit", Wrap::Repeat, Settings { lighting: Lighting::Lit, ..default });
     // Only maps of more than 128 x 128 texels have tables of what is seen from afar.
     cases.push(("far field".into(), Wrap::Repeat, 200, Settings { far_field_mib: 1, ..horizon.clone() }));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, horizon));

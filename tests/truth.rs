@@ -15,7 +15,16 @@ use common::{cobbles, floor_scene};
 use std::sync::OnceLock;
 
 fn settings(filter: Filter) -> Settings {
-    Settings { width: 160, height: 90, filter, texel_budget: 0, samples: 256, far_field: false, ..Settings::default() }
+    Settings {
+        width: 160,
+        height: 90,
+        filter,
+        texel_budget: 0,
+        samples: 256,
+        far_field: false,
+        msaa: 1,
+        ..Settings::default()
+    }
 }
 
 /// Seen so low, and with relief so deep, that much of every footprint is hidden.
@@ -159,7 +168,7 @@ fn horizon_is_steady_in_motion() {
 /// Thin footprints at the skyline once fell between the texels of a table, and were black.
 #[test]
 fn no_pixel_of_the_far_field_is_black() {
-    let settings = Settings { width: 640, height: 48, ..Settings::default() };
+    let settings = Settings { width: 640, height: 48, msaa: 1, ..Settings::default() };
     let scene = basrelief::scene::builtin();
     let mut renderer = Renderer::new(scene, settings).expect("a valid scene");
     let camera = renderer.scene().camera;

@@ -129,7 +129,7 @@ mod tests {
         let settings = Settings::default();
         assert_eq!(word(FILTERS, &settings.filter), "horizon");
         assert_eq!(word(VISIBILITIES, &settings.visibility), "exact");
-        assert_eq!(word(MSAA, &settings.msaa), "1");
+        assert_eq!(word(MSAA, &settings.msaa), "4");
         assert_eq!(word(WRAPS, &Wrap::default()), "repeat");
     }
 }

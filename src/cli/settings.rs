@@ -27,7 +27,7 @@ pub(crate) struct FrameOptions {
     /// Draw only this part of the picture, in pixels from its upper left corner; `basrelief join` puts parts together
     #[arg(long, value_name = "X,Y,W,H", value_parser = Spelt::<Region>::parse, allow_hyphen_values = true)]
     region: Option<Spelt<Region>>,
-    /// Samples a pixel for edges; surfaces are still shaded once a pixel [default: 1]
+    /// Samples a pixel for edges: 1, 4 or 8; surfaces are still shaded once a pixel [default: 4]
     #[arg(long, value_name = "N", value_parser = one_of(choices::MSAA))]
     msaa: Option<u32>,
     /// Leave out triangles seen from behind

@@ -13,8 +13,12 @@ pub(super) struct Report {
     load_ms: f64,
     geometry_ms: f64,
     raster_ms: f64,
+    binning_ms: f64,
+    coverage_ms: f64,
+    attributes_ms: f64,
     shade_ms: f64,
     pixels_shaded: u64,
+    quads_shaded: u64,
     triangles_in: u64,
     triangles_drawn: u64,
     texels_tested: u64,
@@ -36,8 +40,12 @@ pub(super) struct Report {
 pub(super) fn add(sum: &mut Stats, part: &Stats) {
     sum.geometry_ms += part.geometry_ms;
     sum.raster_ms += part.raster_ms;
+    sum.binning_ms += part.binning_ms;
+    sum.coverage_ms += part.coverage_ms;
+    sum.attributes_ms += part.attributes_ms;
     sum.shade_ms += part.shade_ms;
     sum.pixels_shaded += part.pixels_shaded;
+    sum.quads_shaded += part.quads_shaded;
     sum.texels_tested += part.texels_tested;
     sum.texels_visible += part.texels_visible;
     // Every part projects all triangles.
@@ -55,8 +63,12 @@ impl Report {
             load_ms,
             geometry_ms: stats.geometry_ms,
             raster_ms: stats.raster_ms,
+            binning_ms: stats.binning_ms,
+            coverage_ms: stats.coverage_ms,
+            attributes_ms: stats.attributes_ms,
             shade_ms: stats.shade_ms,
             pixels_shaded: stats.pixels_shaded,
+            quads_shaded: stats.quads_shaded,
             triangles_in: stats.triangles_in,
             triangles_drawn: stats.triangles_drawn,
             texels_tested: stats.texels_tested,

@@ -20,7 +20,7 @@
 
 use crate::relief::finite;
 use crate::settings::{Derivatives, Filter, Formulas, Settings};
-use crate::simd::PixelLanes;
+use crate::simd::{PixelLanes, permute};
 
 /// Longest derivative that is kept, in texture repeats a pixel: a footprint of that length holds the mean of all texels
 /// as well as a longer one does.
@@ -48,7 +48,25 @@ pub struct Footprint {
 
 /// Formula (2) or (3), as meant or as printed, in each quad of `uv` with the relief's `offset`.
 #[must_use]
+#[inline]
 pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Derivatives, Formulas)) -> Differences {
+    let (derivatives, formulas) = which;
+    if formulas == Formulas::Meant {
+        let place = |axis: usize| match derivatives {
+            Derivatives::Flat => uv[axis],
+            Derivatives::Relief => uv[axis] + offset[axis],
+        };
+        let [u, v] = [place(0), place(1)];
+        // The quad's pixels at the high and the low ends of each lane's row and column.
+        let dx = |c: PixelLanes| permute(c, [1, 1, 3, 3, 5, 5, 7, 7]) - permute(c, [0, 0, 2, 2, 4, 4, 6, 6]);
+        let dy = |c: PixelLanes| permute(c, [2, 3, 2, 3, 6, 7, 6, 7]) - permute(c, [0, 1, 0, 1, 4, 5, 4, 5]);
+        return Differences { dx: [finite(dx(u)), finite(dx(v))], dy: [finite(dy(u)), finite(dy(v))] };
+    }
+    letter_by_letter(uv, offset, which)
+}
+
+/// The differences lane by lane.
+fn letter_by_letter(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Derivatives, Formulas)) -> Differences {
     let [u, v, m, r] = [uv[0], uv[1], offset[0], offset[1]].map(PixelLanes::to_array);
     let mut result = [[0.0_f32; 8]; 4];
     for lane in 0..8 {
@@ -67,6 +85,7 @@ pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Deriv
 /// formula (3) as meant, a jump of the relief between two pixels (a difference more than `max_stretch` times as long as
 /// that of (2), in texture repeats) is not taken for the slope of a surface: there stands the difference of (2).
 #[must_use]
+#[inline]
 pub fn differences_for(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], settings: &Settings) -> Differences {
     let which = (settings.derivatives, settings.formulas);
     let displaced = differences(uv, offset, which);

@@ -12,6 +12,7 @@ pub mod isotropic;
 pub mod parallax;
 mod seen;
 mod texel_set;
+pub mod trilinear;
 pub mod truth;
 pub mod visible;
 

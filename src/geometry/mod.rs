@@ -10,17 +10,20 @@
 //! coverage is a matter of integers.
 
 mod clip;
+mod cull;
 mod plane;
 mod projection;
 mod samples;
 mod setup;
 
+pub(crate) use plane::BasisLanes;
 pub use plane::{Plane, ScreenBasis};
-pub use projection::{Projection, SUBPIXEL_BITS, ScreenVertex};
-pub use samples::{offset_bounds, pixel_range, sample_offsets};
+pub use projection::{Projection, SUBPIXEL_BITS};
+pub use samples::{offset_bounds, sample_offsets};
 
 use crate::scene::Scene;
 use crate::settings::Settings;
+use projection::ScreenVertices;
 use rayon::prelude::*;
 
 /// Bits of a triangle's index that count within its chunk; a clipped triangle becomes at most six, see [`CHUNK`].
@@ -48,7 +51,7 @@ pub struct ScreenTriangle {
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
     projection: Projection,
-    vertices: Vec<Vec<ScreenVertex>>,
+    vertices: Vec<ScreenVertices>,
     chunks: Vec<Vec<ScreenTriangle>>,
 }
 
@@ -91,13 +94,15 @@ impl Geometry {
 
     fn project_vertices(&mut self, scene: &Scene) {
         let projection = self.projection;
-        self.vertices.resize_with(scene.meshes.len(), Vec::new);
+        self.vertices.resize_with(scene.meshes.len(), ScreenVertices::default);
         self.vertices.par_iter_mut().zip(&scene.meshes).for_each(|(vertices, mesh)| {
-            vertices.resize(mesh.positions.len(), ScreenVertex::default());
-            let chunks = vertices.par_chunks_mut(VERTEX_CHUNK).zip(mesh.positions.par_chunks(VERTEX_CHUNK));
-            chunks.for_each(|(vertices, positions)| {
-                for (vertex, position) in vertices.iter_mut().zip(positions) {
-                    *vertex = projection.vertex(*position);
+            vertices.view.resize(mesh.positions.len(), [0.0; 3]);
+            vertices.snapped.resize(mesh.positions.len(), [0; 2]);
+            let chunks = vertices.view.par_chunks_mut(VERTEX_CHUNK).zip(vertices.snapped.par_chunks_mut(VERTEX_CHUNK));
+            mesh.positions.par_chunks(VERTEX_CHUNK).zip(chunks).for_each(|(positions, (view, snapped))| {
+                let chunks = view.chunks_mut(8).zip(snapped.chunks_mut(8));
+                for (positions, (view, snapped)) in positions.chunks(8).zip(chunks) {
+                    projection.vertices(positions, view, snapped);
                 }
             });
         });

@@ -5,6 +5,9 @@
 //! with `n_0 = p_1 x p_2` and its like, `det = p_0 . n_0`. No division by `w`: corners behind the eye are as good as
 //! others, and clipped pieces share their triangle's functions.
 
+use crate::simd::f64x8;
+use std::ops::{Add, Div, Mul, Sub};
+
 /// A linear function on the screen: `value = c[0] * x + c[1] * y + c[2]`, x to the right and y down, in pixels; the
 /// centre of the first pixel lies at (0.5, 0.5).
 pub type Plane = [f32; 3];
@@ -27,20 +30,16 @@ impl ScreenBasis {
     #[must_use]
     #[inline]
     pub fn new(view: [[f64; 3]; 3], center: [f64; 2]) -> Self {
-        let [p0, p1, p2] = view;
-        let normals = [cross(p1, p2), cross(p2, p0), cross(p0, p1)];
-        let scale = 1.0 / (p0[0] * normals[0][0] + p0[1] * normals[0][1] + p0[2] * normals[0][2]);
-        let basis = Self { rows: normals.map(|n| n.map(|v| v * scale)), center };
-        let [c0, c1, _] = basis.plane_f64([1.0; 3]);
-        let slope = c0.abs() + c1.abs();
-        let (near, far) = (p0[2].min(p1[2]).min(p2[2]), p0[2].max(p1[2]).max(p2[2]));
-        let is_bounded = slope <= f64::from(f32::MAX);
+        let rows = rows(view, 1.0);
+        let (near, slope) = (view[0][2].min(view[1][2]).min(view[2][2]), slope(&rows, f64::abs));
         let is_edge_on = near > 0.0 && slope * near > EDGE_ON;
-        if is_edge_on || !is_bounded { Self::constant(view, far, center) } else { basis }
+        let is_bounded = slope <= f64::from(f32::MAX);
+        if is_edge_on || !is_bounded { Self::constant(view, center) } else { Self { rows, center } }
     }
 
     #[cold]
-    fn constant(view: [[f64; 3]; 3], far: f64, center: [f64; 2]) -> Self {
+    fn constant(view: [[f64; 3]; 3], center: [f64; 2]) -> Self {
+        let far = view[0][2].max(view[1][2]).max(view[2][2]);
         let corner = view.iter().position(|p| p[2] == far).unwrap_or(0);
         let mut rows = [[0.0; 3]; 3];
         rows[corner][2] = 1.0 / far;
@@ -58,18 +57,82 @@ impl ScreenBasis {
     #[must_use]
     #[inline]
     pub fn plane(&self, values: [f64; 3]) -> Plane {
-        self.plane_f64(values).map(|c| c as f32)
-    }
-
-    #[inline]
-    fn plane_f64(&self, [a0, a1, a2]: [f64; 3]) -> [f64; 3] {
-        let [n0, n1, n2] = self.rows;
-        let [c0, c1, c2] = [0, 1, 2].map(|i| a0 * n0[i] + a1 * n1[i] + a2 * n2[i]);
-        [c0, c1, c2 - c0 * self.center[0] - c1 * self.center[1]]
+        plane(&self.rows, self.center, values).map(|c| c as f32)
     }
 }
 
-#[inline]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+/// The [`ScreenBasis`] of eight triangles at once, to the same bits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BasisLanes {
+    rows: [[f64x8; 3]; 3],
+    center: [f64x8; 2],
+}
+
+impl BasisLanes {
+    /// As [`ScreenBasis::new`].
+    #[inline]
+    pub(crate) fn new(view: [[f64x8; 3]; 3], center: [f64; 2]) -> Self {
+        let rows = rows(view, f64x8::ONE);
+        let mut basis = Self { rows, center: center.map(f64x8::splat) };
+        let (near, slope) = (view[0][2].fast_min(view[1][2]).fast_min(view[2][2]), slope(&rows, f64x8::abs));
+        let is_edge_on = near.simd_gt(f64x8::ZERO) & (slope * near).simd_gt(f64x8::splat(EDGE_ON));
+        let is_bounded = slope.simd_le(f64x8::splat(f64::from(f32::MAX)));
+        let special = is_edge_on.to_bitmask() | (!is_bounded.to_bitmask() & 0xff);
+        if special != 0 {
+            (0..8).filter(|lane| special >> lane & 1 != 0).for_each(|lane| basis.set_lane(lane, &view, center));
+        }
+        basis
+    }
+
+    #[cold]
+    fn set_lane(&mut self, lane: usize, view: &[[f64x8; 3]; 3], center: [f64; 2]) {
+        let one = ScreenBasis::new(view.map(|p| p.map(|c| c.as_array()[lane])), center);
+        for (lanes, value) in self.rows.iter_mut().flatten().zip(one.rows.as_flattened()) {
+            lanes.as_mut_array()[lane] = *value;
+        }
+    }
+
+    /// The coefficients of the planes of 1 / w.
+    #[inline]
+    pub(crate) fn inverse_w(&self) -> [[f32; 8]; 3] {
+        self.plane([f64x8::ONE; 3])
+    }
+
+    /// The coefficients of the planes of `a / w` from the values of `a` at the corners.
+    #[inline]
+    pub(crate) fn plane(&self, values: [f64x8; 3]) -> [[f32; 8]; 3] {
+        plane(&self.rows, self.center, values).map(|lanes| lanes.to_array().map(|c| c as f32))
+    }
+}
+
+/// A number or lanes of numbers.
+trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {}
+
+impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>> Number for T {}
+
+/// `n_i / det` from the corners.
+#[inline(always)]
+fn rows<T: Number>([p0, p1, p2]: [[T; 3]; 3], one: T) -> [[T; 3]; 3] {
+    let normals = [cross(p1, p2), cross(p2, p0), cross(p0, p1)];
+    let scale = one / (p0[0] * normals[0][0] + p0[1] * normals[0][1] + p0[2] * normals[0][2]);
+    normals.map(|n| n.map(|v| v * scale))
+}
+
+/// How much 1 / w changes over a pixel, both ways together.
+#[inline(always)]
+fn slope<T: Number>(rows: &[[T; 3]; 3], abs: impl Fn(T) -> T) -> T {
+    let along = |axis: usize| abs(rows[0][axis] + rows[1][axis] + rows[2][axis]);
+    along(0) + along(1)
+}
+
+#[inline(always)]
+fn plane<T: Number>(rows: &[[T; 3]; 3], center: [T; 2], [a0, a1, a2]: [T; 3]) -> [T; 3] {
+    let [n0, n1, n2] = *rows;
+    let [c0, c1, c2] = [0, 1, 2].map(|i| a0 * n0[i] + a1 * n1[i] + a2 * n2[i]);
+    [c0, c1, c2 - c0 * center[0] - c1 * center[1]]
+}
+
+#[inline(always)]
+fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -6,31 +6,27 @@
 
 use crate::scene::Camera;
 use crate::settings::Settings;
+use crate::simd::{f32x8, f64x8};
 use glam::Vec3;
 
 /// Fractional bits of snapped coordinates: 1/256 pixel, what GPUs use.
 pub const SUBPIXEL_BITS: u32 = 8;
+const SCALE: f64 = (1_u32 << SUBPIXEL_BITS) as f64;
 /// Half the side of the guard band in pixels around the frame's middle. Frames are at most 32768 wide, so what is
 /// clipped there is out of sight, and products of snapped differences stay far inside 64 bits.
 pub(super) const GUARD: f64 = 65536.0;
-/// Marks a vertex that must not be used without clipping.
-const UNSNAPPED: [i32; 2] = [i32::MIN; 2];
+/// Marks a vertex that must not be used without clipping: before the near plane, beyond the guard band or not finite.
+pub(super) const UNSNAPPED: [i32; 2] = [i32::MIN; 2];
+/// Added to an f64 below 2^51, leaves it rounded to a whole number, ties to even, in the low bits.
+const ROUNDED: f64 = 6_755_399_441_055_744.0;
 
-/// A vertex in view space and on the screen.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ScreenVertex {
+/// Vertices in view space and on the screen.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ScreenVertices {
     /// `(x, y, w)`: pixels times world units, and world units.
-    pub view: [f32; 3],
-    snapped: [i32; 2],
-}
-
-impl ScreenVertex {
-    /// Place on the screen in 1/256 pixel; `None` before the near plane, beyond the guard band or if not finite.
-    #[must_use]
-    #[inline]
-    pub fn snapped(&self) -> Option<[i32; 2]> {
-        (self.snapped != UNSNAPPED).then_some(self.snapped)
-    }
+    pub(super) view: Vec<[f32; 3]>,
+    /// Place on the screen in 1/256 pixel, or [`UNSNAPPED`].
+    pub(super) snapped: Vec<[i32; 2]>,
 }
 
 /// A camera and a frame's size.
@@ -65,40 +61,53 @@ impl Projection {
         }
     }
 
-    /// A vertex from its world position.
-    #[must_use]
-    #[inline]
-    pub fn vertex(&self, position: Vec3) -> ScreenVertex {
-        let d = position - self.eye;
-        let view = self.axes.map(|axis| axis.x * d.x + axis.y * d.y + axis.z * d.z);
-        let [x, y, w] = view;
+    /// Up to eight vertices from their world positions.
+    #[inline(always)]
+    pub(super) fn vertices(&self, positions: &[Vec3], view: &mut [[f32; 3]], snapped: &mut [[i32; 2]]) {
+        let mut d = [[0.0_f32; 8]; 3];
+        for (lane, position) in positions.iter().enumerate() {
+            (d[0][lane], d[1][lane], d[2][lane]) = (position.x, position.y, position.z);
+        }
+        let d: [f32x8; 3] = std::array::from_fn(|i| f32x8::new(d[i]) - self.eye[i]);
+        let [x, y, w] = self.axes.map(|axis| d[0] * axis.x + d[1] * axis.y + d[2] * axis.z);
         // A power of two: the product is exact, so that the clipper, in f64, agrees on who is inside.
         let bound = w * GUARD as f32;
-        let is_inside = w >= self.near && x.abs() <= bound && y.abs() <= bound && bound.is_finite();
-        let snapped = if is_inside { self.snap(view.map(f64::from)) } else { UNSNAPPED };
-        ScreenVertex { view, snapped }
+        let is_inside =
+            w.simd_ge(f32x8::splat(self.near)) & x.abs().simd_le(bound) & y.abs().simd_le(bound) & bound.is_finite();
+        let is_inside = crate::simd::mask(is_inside).to_array();
+        let [x, y, w] = [x, y, w].map(f32x8::to_array);
+        let wide = |lanes: [f32; 8]| f64x8::new(lanes.map(f64::from));
+        let places = [(x, self.center[0]), (y, self.center[1])].map(|(c, center)| {
+            let screen = (wide(c) / wide(w)).fast_max(f64x8::splat(-GUARD)).fast_min(f64x8::splat(GUARD)) + center;
+            (screen * SCALE + ROUNDED).to_array().map(|rounded| rounded.to_bits() as i32)
+        });
+        for (lane, (view, snapped)) in view.iter_mut().zip(snapped).enumerate() {
+            *view = [x[lane], y[lane], w[lane]];
+            *snapped = if is_inside[lane] != 0 { places.map(|place| place[lane]) } else { UNSNAPPED };
+        }
     }
 
-    /// The ray from the eye to a world position, world units.
-    #[must_use]
-    pub fn ray(&self, position: Vec3) -> [f64; 3] {
-        std::array::from_fn(|i| f64::from(position[i]) - f64::from(self.eye[i]))
+    /// The rays from the eye to eight world positions, world units.
+    #[inline]
+    pub(crate) fn rays(&self, position: [f64x8; 3]) -> [f64x8; 3] {
+        std::array::from_fn(|i| position[i] - f64x8::splat(f64::from(self.eye[i])))
     }
 
-    /// View space of a ray from the eye, without the rounding of [`Projection::vertex`].
-    #[must_use]
-    pub fn view_from_ray(&self, ray: [f64; 3]) -> [f64; 3] {
-        self.axes.map(|axis| (0..3).map(|i| f64::from(axis[i]) * ray[i]).sum())
+    /// View space of eight rays from the eye, without the rounding of [`Projection::vertex`].
+    #[inline]
+    pub(crate) fn views_from_rays(&self, ray: [f64x8; 3]) -> [f64x8; 3] {
+        self.axes.map(|axis| {
+            let [x, y, z] = [0, 1, 2].map(|i| f64x8::splat(f64::from(axis[i])) * ray[i]);
+            x + y + z
+        })
     }
 
     /// Snapped screen coordinates of a view-space point within the guard band, `w > 0`.
-    #[must_use]
     #[inline]
-    pub fn snap(&self, [x, y, w]: [f64; 3]) -> [i32; 2] {
-        let scale = f64::from(1_u32 << SUBPIXEL_BITS);
+    pub(super) fn snap(&self, [x, y, w]: [f64; 3]) -> [i32; 2] {
         let snap = |value: f64, center: f64| {
             let screen = (value / w).clamp(-GUARD, GUARD) + center;
-            (screen * scale).round_ties_even() as i32
+            (screen * SCALE).round_ties_even() as i32
         };
         [snap(x, self.center[0]), snap(y, self.center[1])]
     }

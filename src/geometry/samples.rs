@@ -31,11 +31,3 @@ pub fn offset_bounds(num_samples: u32) -> [i32; 2] {
         _ => [128, 128],
     }
 }
-
-/// First and last pixel along one axis whose sample at `offset` lies within `min..=max` (all in 1/256 pixel); the last
-/// lies before the first if there is none.
-#[must_use]
-#[inline]
-pub fn pixel_range(min: i32, max: i32, offset: i32) -> (i32, i32) {
-    ((min - offset + 255) >> 8, (max - offset) >> 8)
-}

@@ -1,35 +1,34 @@
-//! Triangle set-up: cull, clip where needed, and make [`ScreenTriangle`]s.
+//! Triangle set-up, eight triangles at a time: cull, clip where needed, and make [`ScreenTriangle`]s.
 //!
-//! The orientation is the sign of `area = (b - a) x (c - a)` of the snapped corners, y down: positive is clockwise as
-//! displayed, which is the back. Every screen triangle leaves with a positive area.
+//! Every screen triangle leaves with a positive area, y down: clockwise as displayed.
 
+use super::ScreenTriangle;
 use super::clip::clip;
-use super::plane::ScreenBasis;
-use super::projection::{Projection, ScreenVertex};
-use super::samples::{offset_bounds, pixel_range, sample_offsets};
-use super::{Plane, ScreenTriangle};
+use super::cull::{Culler, twice_area};
+use super::plane::{BasisLanes, ScreenBasis};
+use super::projection::{Projection, ScreenVertices, UNSNAPPED};
 use crate::settings::Settings;
+use crate::simd::{f64x8, i32x8};
 use std::ops::Range;
-
-type Corners = [[i32; 2]; 3];
 
 /// What set-up needs to know of the frame.
 pub(super) struct Setup<'a> {
     projection: &'a Projection,
-    offsets: &'static [[i32; 2]],
-    /// Least and largest sample offset along both axes.
-    offset_bounds: [i32; 2],
-    culls_back_faces: bool,
+    culler: Culler,
+}
+
+/// Triangles that wait for their depth.
+#[derive(Default)]
+struct Queue {
+    corners: [[[i32; 2]; 3]; 8],
+    view: [[[f32; 8]; 3]; 3],
+    triangles: [u32; 8],
+    num: usize,
 }
 
 impl<'a> Setup<'a> {
     pub(super) fn new(projection: &'a Projection, settings: &Settings) -> Self {
-        Self {
-            projection,
-            offsets: sample_offsets(settings.msaa),
-            offset_bounds: offset_bounds(settings.msaa),
-            culls_back_faces: settings.cull_back_faces,
-        }
+        Self { projection, culler: Culler::new(projection, settings) }
     }
 
     /// Appends the screen triangles of the triangles `range` of a mesh.
@@ -38,21 +37,35 @@ impl<'a> Setup<'a> {
         mesh: usize,
         range: Range<usize>,
         triangles: &[[u32; 3]],
-        vertices: &[ScreenVertex],
+        vertices: &ScreenVertices,
         out: &mut Vec<ScreenTriangle>,
     ) {
-        for (index, indices) in range.clone().zip(&triangles[range]) {
-            let corners = indices.map(|i| vertices[i as usize]);
-            let [Some(a), Some(b), Some(c)] = corners.map(|corner| corner.snapped()) else {
-                self.set_up_clipped(corners.map(|c| c.view), [mesh as u32, index as u32], out);
-                continue;
-            };
-            if let Some(corners_snapped) = self.oriented([a, b, c]) {
-                let view = corners.map(|c| c.view.map(f64::from));
-                let depth = ScreenBasis::new(view, self.projection.center).inverse_w();
-                out.push(ScreenTriangle { corners: corners_snapped, depth, mesh: mesh as u32, triangle: index as u32 });
+        let mut queue = Queue::default();
+        let mut first = range.start;
+        for indices in triangles[range].chunks(8) {
+            let corners = snapped_corners(indices, &vertices.snapped);
+            let lanes = corners.map(|corner| corner.map(i32x8::new));
+            let kept = self.culler.keep(&lanes);
+            let is_unsnapped = unsnapped(&corners[0][0]) | unsnapped(&corners[1][0]) | unsnapped(&corners[2][0]);
+            let mut left = (kept.lanes & !is_unsnapped) | (is_unsnapped & ((1 << indices.len()) - 1));
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let triangle = (first + lane) as u32;
+                let view = indices[lane].map(|i| vertices.view[i as usize]);
+                if is_unsnapped >> lane & 1 != 0 {
+                    queue.finish(self.projection, mesh, out);
+                    self.set_up_clipped(view, [mesh as u32, triangle], out);
+                } else {
+                    queue.push(oriented(&corners, lane, kept.is_back), &view, triangle);
+                    if queue.num == 8 {
+                        queue.finish(self.projection, mesh, out);
+                    }
+                }
             }
+            first += indices.len();
         }
+        queue.finish(self.projection, mesh, out);
     }
 
     #[cold]
@@ -64,73 +77,78 @@ impl<'a> Setup<'a> {
         let Some(polygon) = clip(view, self.projection) else {
             return;
         };
-        let depth: Plane = ScreenBasis::new(view, self.projection.center).inverse_w();
-        let first = self.projection.snap(polygon.corners()[0]);
-        let pieces = polygon.corners()[1..].windows(2);
-        let pieces = pieces.map(|pair| [first, self.projection.snap(pair[0]), self.projection.snap(pair[1])]);
-        // Snapping may turn a sliver over; it then lies within the other pieces and must not count again.
-        let is_back = pieces.clone().map(twice_area).sum::<i64>() > 0;
-        for piece in pieces.filter(|&piece| (twice_area(piece) > 0) == is_back) {
-            if let Some(corners) = self.oriented(piece) {
-                out.push(ScreenTriangle { corners, depth, mesh, triangle });
+        let depth = ScreenBasis::new(view, self.projection.center).inverse_w();
+        // At most six pieces around the first corner; lanes beyond have no area.
+        let mut corners = [[[0; 8]; 2]; 3];
+        let snapped = |i: usize| self.projection.snap(polygon.corners()[i]);
+        for piece in 0..polygon.corners().len() - 2 {
+            for (corner, of) in corners.iter_mut().zip([0, piece + 1, piece + 2]) {
+                let place = snapped(of);
+                (0..2).for_each(|axis| corner[axis][piece] = place[axis]);
             }
         }
-    }
-
-    /// The corners in positive orientation; `None` if culled or without a sample.
-    #[inline]
-    fn oriented(&self, [a, b, c]: Corners) -> Option<Corners> {
-        let area = twice_area([a, b, c]);
-        if area == 0 || (area > 0 && self.culls_back_faces) {
-            return None;
+        let lanes = corners.map(|corner| corner.map(i32x8::new));
+        let kept = self.culler.keep(&lanes);
+        // Snapping may turn a sliver over; it then lies within the other pieces and must not count again.
+        let is_back = twice_area(&lanes).to_array().iter().sum::<f64>() > 0.0;
+        for piece in (0..6).filter(|piece| kept.lanes >> piece & 1 != 0 && (kept.is_back >> piece & 1 != 0) == is_back)
+        {
+            out.push(ScreenTriangle { corners: oriented(&corners, piece, kept.is_back), depth, mesh, triangle });
         }
-        let corners = if area > 0 { [a, b, c] } else { [a, c, b] };
-        self.may_hold_sample(&corners).then_some(corners)
-    }
-
-    /// Whether the bounding box holds a sample of the frame; if it holds one pixel's only, whether the triangle does.
-    #[inline]
-    fn may_hold_sample(&self, corners: &Corners) -> bool {
-        let [a, b, c] = *corners;
-        let bounds = [0, 1].map(|i| (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i])));
-        let [least, most] = self.offset_bounds;
-        let size = [self.projection.width, self.projection.height];
-        let pixels = [0, 1].map(|i| {
-            let (min, max) = bounds[i];
-            ((min - most + 255) >> 8, (max - least) >> 8, size[i] as i32)
-        });
-        if pixels.iter().any(|&(first, last, size)| first > last || last < 0 || first >= size) {
-            return false;
-        }
-        let is_small = pixels.iter().all(|&(first, last, _)| last - first <= 1);
-        !is_small || self.holds_sample(corners, bounds)
-    }
-
-    /// For triangles of at most two pixels a side: whether a sample lies in the bounding box and inside all edges.
-    #[inline]
-    fn holds_sample(&self, corners: &Corners, [x, y]: [(i32, i32); 2]) -> bool {
-        self.offsets.iter().any(|offset| {
-            let (x0, x1) = pixel_range(x.0, x.1, offset[0]);
-            let (y0, y1) = pixel_range(y.0, y.1, offset[1]);
-            let mut pixels = (y0..=y1).flat_map(|py| (x0..=x1).map(move |px| [px, py]));
-            pixels.any(|p| is_inside(corners, [p[0] * 256 + offset[0], p[1] * 256 + offset[1]]))
-        })
     }
 }
 
-/// Positive where the corners run clockwise as displayed.
-#[inline]
-fn twice_area([a, b, c]: Corners) -> i64 {
-    let [(ux, uy), (vx, vy)] = [b, c].map(|p| (i64::from(p[0] - a[0]), i64::from(p[1] - a[1])));
-    ux * vy - uy * vx
+impl Queue {
+    #[inline(always)]
+    fn push(&mut self, corners: [[i32; 2]; 3], view: &[[f32; 3]; 3], triangle: u32) {
+        self.corners[self.num] = corners;
+        self.triangles[self.num] = triangle;
+        for (lanes, &value) in self.view.as_flattened_mut().iter_mut().zip(view.as_flattened()) {
+            lanes[self.num] = value;
+        }
+        self.num += 1;
+    }
+
+    /// Computes the depths and appends the triangles.
+    #[inline]
+    fn finish(&mut self, projection: &Projection, mesh: usize, out: &mut Vec<ScreenTriangle>) {
+        if self.num == 0 {
+            return;
+        }
+        let view = self.view.map(|corner| corner.map(|lanes| f64x8::new(lanes.map(f64::from))));
+        let depth = BasisLanes::new(view, projection.center).inverse_w();
+        out.extend((0..self.num).map(|lane| ScreenTriangle {
+            corners: self.corners[lane],
+            depth: depth.map(|lanes| lanes[lane]),
+            mesh: mesh as u32,
+            triangle: self.triangles[lane],
+        }));
+        self.num = 0;
+    }
 }
 
-/// Whether a point lies in a small triangle of positive area or on any of its edges.
-#[inline]
-fn is_inside(corners: &Corners, p: [i32; 2]) -> bool {
-    (0..3).all(|i| {
-        let (a, b) = (corners[i], corners[(i + 1) % 3]);
-        // Differences are below 2^10 here.
-        (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0
-    })
+/// Places of the corners of up to eight triangles; lanes beyond have no area.
+#[inline(always)]
+fn snapped_corners(triangles: &[[u32; 3]], snapped: &[[i32; 2]]) -> [[[i32; 8]; 2]; 3] {
+    let mut corners = [[[0; 8]; 2]; 3];
+    for (lane, indices) in triangles.iter().enumerate() {
+        for (corner, &i) in corners.iter_mut().zip(indices) {
+            let [x, y] = snapped[i as usize];
+            (corner[0][lane], corner[1][lane]) = (x, y);
+        }
+    }
+    corners
+}
+
+/// A bit for each vertex that has no place.
+#[inline(always)]
+fn unsnapped(x: &[i32; 8]) -> u32 {
+    i32x8::new(*x).simd_eq(i32x8::splat(UNSNAPPED[0])).to_bitmask()
+}
+
+/// The corners of a lane, so that their area is positive.
+#[inline(always)]
+fn oriented(corners: &[[[i32; 8]; 2]; 3], lane: usize, is_back: u32) -> [[i32; 2]; 3] {
+    let [a, b, c] = [0, 1, 2].map(|corner: usize| corners[corner].map(|lanes| lanes[lane]));
+    if is_back >> lane & 1 != 0 { [a, b, c] } else { [a, c, b] }
 }

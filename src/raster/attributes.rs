@@ -1,4 +1,4 @@
-//! The attribute planes of a triangle, made when it turns out to be visible.
+//! The attribute planes of the triangles that turn out to be visible, eight at a time: lanes are triangles.
 //!
 //! The ray to a corner, in the corner's texture frame, solves `ray = alpha U + beta V - gamma s N` with `U = dP/du`,
 //! `V = dP/dv`, `s = sqrt(|U x V|)`. By Cramer's rule, with `volume = N . (U x V)`, `alpha = (V x N) . ray / volume`,
@@ -6,73 +6,165 @@
 //! stay smooth.
 
 use super::quad::{AttributePlanes, LitPlanes, Plane};
-use crate::geometry::{Geometry, ScreenBasis, ScreenTriangle};
+use crate::geometry::{BasisLanes, Geometry, Projection, ScreenTriangle};
 use crate::scene::{Mesh, Scene};
 use crate::settings::{Lighting, Settings};
-use glam::{DVec3, Vec3};
+use crate::simd::f64x8;
+use glam::Vec3;
 
 /// A frame whose volume is less than this share of the product of its lengths counts as flat; tangents in f32 are not
 /// known better.
 const FLAT: f64 = 1e-6;
-/// The view straight down, where there is no frame.
-const STRAIGHT: DVec3 = DVec3::Z;
+
+/// Eight vectors of three components.
+type Vectors = [f64x8; 3];
+
+/// The corners of a triangle of the scene.
+#[derive(Clone, Copy)]
+struct Corners<'a> {
+    mesh: &'a Mesh,
+    indices: [usize; 3],
+}
+
+/// Makes attribute planes of the triangles of a scene.
+pub(super) struct PlaneMaker<'a> {
+    projection: &'a Projection,
+    scene: &'a Scene,
+    is_lit: bool,
+    parallax: bool,
+}
 
 impl AttributePlanes {
     /// The planes of the scene's triangle that `triangle` is, or is a piece of.
     #[must_use]
     pub fn new(geometry: &Geometry, triangle: &ScreenTriangle, scene: &Scene, settings: &Settings) -> Self {
-        let mut planes = Self::default();
-        planes.set(geometry, triangle, scene, settings);
+        let mut planes = [Self::default()];
+        PlaneMaker::new(geometry, scene, settings).fill(&mut planes, &[[triangle.mesh, triangle.triangle]]);
+        let [planes] = planes;
         planes
     }
+}
 
-    /// As [`AttributePlanes::new`], in place.
-    pub fn set(&mut self, geometry: &Geometry, triangle: &ScreenTriangle, scene: &Scene, settings: &Settings) {
-        let mesh = &scene.meshes[triangle.mesh as usize];
-        let corners = mesh.triangles[triangle.triangle as usize].map(|i| i as usize);
-        let projection = geometry.projection();
-        let rays = corners.map(|i| projection.ray(mesh.positions[i]));
-        let basis = ScreenBasis::new(rays.map(|ray| projection.view_from_ray(ray)), projection.center);
-        self.inverse_w = basis.inverse_w();
-        if mesh.tex_coords.is_empty() {
-            self.uv = [Plane::default(); 2];
-            self.view = [Plane::default(), Plane::default(), self.inverse_w];
-        } else {
-            self.uv = [0, 1].map(|axis| basis.plane(corners.map(|i| f64::from(mesh.tex_coords[i][axis]))));
-            let views = [0, 1, 2].map(|c| view_in_texture_frame(DVec3::from(rays[c]), mesh, corners[c]));
-            self.view = [0, 1, 2].map(|axis| basis.plane(views.map(|view| view[axis])));
+impl<'a> PlaneMaker<'a> {
+    pub(super) fn new(geometry: &'a Geometry, scene: &'a Scene, settings: &Settings) -> Self {
+        let is_lit = settings.lighting == Lighting::Lit;
+        Self { projection: geometry.projection(), scene, is_lit, parallax: settings.parallax }
+    }
+
+    /// Sets the planes of the triangles given by the indices of their mesh and in it.
+    pub(super) fn fill(&self, planes: &mut [AttributePlanes], triangles: &[[u32; 2]]) {
+        for (planes, triangles) in planes.chunks_mut(8).zip(triangles.chunks(8)) {
+            // Lanes without a triangle repeat the last one.
+            let corners = std::array::from_fn(|lane| self.corners(triangles[lane.min(triangles.len() - 1)]));
+            self.fill_lanes(planes, &corners);
         }
-        if settings.lighting == Lighting::Lit {
-            self.lit.get_or_insert_default().set(&basis, mesh, corners);
-        } else {
-            self.lit = None;
+    }
+
+    fn corners(&self, [mesh, triangle]: [u32; 2]) -> Corners<'a> {
+        let mesh = &self.scene.meshes[mesh as usize];
+        Corners { mesh, indices: mesh.triangles[triangle as usize].map(|i| i as usize) }
+    }
+
+    fn fill_lanes(&self, planes: &mut [AttributePlanes], corners: &[Corners; 8]) {
+        let rays = vectors(corners, |mesh, i| mesh.positions[i]).map(|position| self.projection.rays(position));
+        let basis = BasisLanes::new(rays.map(|ray| self.projection.views_from_rays(ray)), self.projection.center);
+        let inverse_w = basis.inverse_w();
+        let tex_coords =
+            vectors(corners, |mesh, i| mesh.tex_coords.get(i).map_or(Vec3::ZERO, |uv| Vec3::new(uv.x, uv.y, 0.0)));
+        let uv = [0, 1].map(|axis| basis.plane(tex_coords.map(|uv| uv[axis])));
+        for (lane, planes) in planes.iter_mut().enumerate() {
+            planes.inverse_w = one(&inverse_w, lane);
+            let is_textured = !corners[lane].mesh.tex_coords.is_empty();
+            planes.uv = if is_textured { [0, 1].map(|i| one(&uv[i], lane)) } else { [Plane::default(); 2] };
+            planes.view = [Plane::default(), Plane::default(), planes.inverse_w];
         }
+        if corners.iter().any(|corners| self.needs_view(corners)) {
+            let (normals, tangents) = frames(corners);
+            let views = [0, 1, 2].map(|c| view_in_texture_frame(rays[c], normals[c], [tangents[0][c], tangents[1][c]]));
+            let view = [0, 1, 2].map(|axis| basis.plane(views.map(|view| view[axis])));
+            let planes = planes.iter_mut().enumerate().filter(|(lane, _)| self.needs_view(&corners[*lane]));
+            planes.for_each(|(lane, planes)| planes.view = [0, 1, 2].map(|i| one(&view[i], lane)));
+        }
+        if self.is_lit {
+            fill_lit(planes, &basis, corners);
+        } else {
+            planes.iter_mut().for_each(|planes| planes.lit = None);
+        }
+    }
+
+    /// Whether anything may ask for the view: not where there is no relief.
+    fn needs_view(&self, corners: &Corners) -> bool {
+        let is_flat = |mesh: &Mesh| {
+            let surface = self.scene.materials[mesh.material].surface.as_ref();
+            mesh.tex_coords.is_empty() || surface.is_some_and(|surface| surface.relief_depth == 0.0)
+        };
+        self.parallax && !is_flat(corners.mesh)
     }
 }
 
-impl LitPlanes {
-    fn set(&mut self, basis: &ScreenBasis, mesh: &Mesh, corners: [usize; 3]) {
-        let planes = |vectors: [Vec3; 3]| [0, 1, 2].map(|axis| basis.plane(vectors.map(|v| f64::from(v[axis]))));
-        let tangents = |i: usize| mesh.tangents.get(i).copied().unwrap_or_default();
-        self.position = planes(corners.map(|i| mesh.positions[i]));
-        self.normal = planes(corners.map(|i| mesh.normals[i]));
-        self.tangent_u = planes(corners.map(|i| tangents(i)[0]));
-        self.tangent_v = planes(corners.map(|i| tangents(i)[1]));
+fn fill_lit(planes: &mut [AttributePlanes], basis: &BasisLanes, corners: &[Corners; 8]) {
+    let positions = vectors(corners, |mesh, i| mesh.positions[i]);
+    let (normals, [tangents_u, tangents_v]) = frames(corners);
+    let [position, normal, tangent_u, tangent_v] = [positions, normals, tangents_u, tangents_v]
+        .map(|vectors| [0, 1, 2].map(|axis| basis.plane(vectors.map(|vector| vector[axis]))));
+    for (lane, planes) in planes.iter_mut().enumerate() {
+        let three = |of: &[[[f32; 8]; 3]; 3]| [0, 1, 2].map(|axis| one(&of[axis], lane));
+        **planes.lit.get_or_insert_default() = LitPlanes {
+            position: three(&position),
+            normal: three(&normal),
+            tangent_u: three(&tangent_u),
+            tangent_v: three(&tangent_v),
+        };
     }
 }
 
-/// `(alpha, beta, gamma)` of a ray in the texture frame of a vertex.
-fn view_in_texture_frame(ray: DVec3, mesh: &Mesh, vertex: usize) -> DVec3 {
-    let [u, v] = mesh.tangents[vertex].map(|tangent| tangent.as_dvec3());
-    let n = mesh.normals[vertex].as_dvec3();
-    let across = u.cross(v);
-    let volume = n.dot(across);
-    let size_squared = u.length_squared() * v.length_squared() * n.length_squared();
-    if volume * volume > FLAT * FLAT * size_squared && volume.is_normal() {
-        let s = across.length().sqrt();
-        let scale = 1.0 / (volume * s);
-        DVec3::new(v.cross(n).dot(ray) * s, n.cross(u).dot(ray) * s, -across.dot(ray)) * scale
-    } else {
-        STRAIGHT
-    }
+/// The plane of one lane.
+#[inline(always)]
+fn one(coefficients: &[[f32; 8]; 3], lane: usize) -> Plane {
+    coefficients.map(|lanes| lanes[lane])
+}
+
+/// A vector of each vertex, corner by corner.
+#[inline(always)]
+fn vectors(corners: &[Corners; 8], of: impl Fn(&Mesh, usize) -> Vec3) -> [Vectors; 3] {
+    [0, 1, 2].map(|corner| {
+        let mut lanes = [[0.0_f32; 8]; 3];
+        for (lane, Corners { mesh, indices }) in corners.iter().enumerate() {
+            let [x, y, z] = of(mesh, indices[corner]).to_array();
+            (lanes[0][lane], lanes[1][lane], lanes[2][lane]) = (x, y, z);
+        }
+        lanes.map(|lanes| f64x8::new(lanes.map(f64::from)))
+    })
+}
+
+/// Normals, dP/du and dP/dv, corner by corner; tangents are 0 without texture coordinates.
+fn frames(corners: &[Corners; 8]) -> ([Vectors; 3], [[Vectors; 3]; 2]) {
+    let tangents = [0, 1]
+        .map(|axis| vectors(corners, |mesh, i| mesh.tangents.get(i).map_or(Vec3::ZERO, |tangents| tangents[axis])));
+    (vectors(corners, |mesh, i| mesh.normals[i]), tangents)
+}
+
+/// `(alpha, beta, gamma)` of rays in the texture frames of vertices; straight down where there is no frame.
+fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vectors {
+    let across = cross(u, v);
+    let volume = dot(n, across);
+    let size_squared = dot(u, u) * dot(v, v) * dot(n, n);
+    let is_frame = (volume * volume).simd_gt(FLAT * FLAT * size_squared)
+        & volume.abs().simd_ge(f64x8::splat(f64::MIN_POSITIVE))
+        & volume.is_finite();
+    let s = dot(across, across).sqrt().sqrt();
+    let scale = f64x8::ONE / (volume * s);
+    let solved = [dot(cross(v, n), ray) * s * scale, dot(cross(n, u), ray) * s * scale, -dot(across, ray) * scale];
+    let straight = [f64x8::ZERO, f64x8::ZERO, f64x8::ONE];
+    std::array::from_fn(|i| is_frame.select(solved[i], straight[i]))
+}
+
+#[inline(always)]
+fn cross(a: Vectors, b: Vectors) -> Vectors {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn dot(a: Vectors, b: Vectors) -> f64x8 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

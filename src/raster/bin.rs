@@ -13,6 +13,9 @@ use rayon::prelude::*;
 /// Groups a thread: more balance better and cost `4 * num_tiles` bytes each.
 const GROUPS_PER_THREAD: usize = 2;
 
+/// Not one tile alone.
+const MANY: u32 = u32::MAX;
+
 /// What a part of a frame is widened to: blocks of coverage and of shading lie where they do in the whole frame.
 const ALIGNED: i32 = if SHADED_BLOCK as i32 > BLOCK { SHADED_BLOCK as i32 } else { BLOCK };
 
@@ -79,14 +82,19 @@ struct Group {
     /// Where each tile's part of `triangles` begins, and the end.
     starts: Vec<u32>,
     triangles: Vec<u32>,
+    /// The only tile of each triangle, or [`MANY`].
+    tiles: Vec<u32>,
 }
 
 impl Group {
     fn fill(&mut self, geometry: &Geometry, chunks: std::ops::Range<usize>, grid: &TileGrid) {
         self.starts.clear();
         self.starts.resize(grid.num() + 1, 0);
+        self.tiles.clear();
         for (_, triangle) in chunks.clone().flat_map(|chunk| geometry.chunk(chunk)) {
-            for_each_tile(triangle, grid, |tile| self.starts[tile + 1] += 1);
+            let range = TileRange::new(triangle, grid);
+            self.tiles.push(range.only());
+            range.for_each(triangle, grid, |tile| self.starts[tile + 1] += 1);
         }
         let mut sum = 0;
         for start in &mut self.starts {
@@ -95,38 +103,69 @@ impl Group {
         }
         // `starts[tile]` is moved on to the tile's end while filling, and set back by one tile after.
         self.triangles.resize(sum as usize, 0);
-        for (index, triangle) in chunks.flat_map(|chunk| geometry.chunk(chunk)) {
-            for_each_tile(triangle, grid, |tile| {
+        let all = chunks.flat_map(|chunk| geometry.chunk(chunk));
+        for ((index, triangle), &only) in all.zip(&self.tiles) {
+            let mut add = |tile: usize| {
                 self.triangles[self.starts[tile] as usize] = index;
                 self.starts[tile] += 1;
-            });
+            };
+            if only == MANY {
+                TileRange::new(triangle, grid).for_each(triangle, grid, add);
+            } else {
+                add(only as usize);
+            }
         }
         self.starts.rotate_right(1);
         self.starts[0] = 0;
     }
 }
 
-#[inline(always)]
-fn for_each_tile(triangle: &ScreenTriangle, grid: &TileGrid, mut found: impl FnMut(usize)) {
-    let bounds = bounds(triangle, &grid.area, grid.offset_bounds);
-    if bounds.min[0] >= bounds.max[0] || bounds.min[1] >= bounds.max[1] {
-        return;
+/// The tiles that a triangle's bounding box touches.
+struct TileRange {
+    first: [i32; 2],
+    last: [i32; 2],
+    columns: i32,
+}
+
+impl TileRange {
+    #[inline(always)]
+    fn new(triangle: &ScreenTriangle, grid: &TileGrid) -> Self {
+        let bounds = bounds(triangle, &grid.area, grid.offset_bounds);
+        let shift = grid.tile_size.trailing_zeros();
+        let is_empty = bounds.min[0] >= bounds.max[0] || bounds.min[1] >= bounds.max[1];
+        let first = [0, 1].map(|i| (bounds.min[i] - grid.area.min[i]) >> shift);
+        let last =
+            [0, 1].map(|i| if is_empty { first[i] - 1 } else { (bounds.max[i] - 1 - grid.area.min[i]) >> shift });
+        Self { first, last, columns: grid.num_tiles[0] }
     }
-    let shift = grid.tile_size.trailing_zeros();
-    let first = [0, 1].map(|i| (bounds.min[i] - grid.area.min[i]) >> shift);
-    let last = [0, 1].map(|i| (bounds.max[i] - 1 - grid.area.min[i]) >> shift);
-    let tile = |x: i32, y: i32| (y * grid.num_tiles[0] + x) as usize;
-    if last[0] - first[0] <= 1 && last[1] - first[1] <= 1 {
-        (first[1]..=last[1]).for_each(|y| (first[0]..=last[0]).for_each(|x| found(tile(x, y))));
-        return;
+
+    #[inline(always)]
+    fn tile(&self, x: i32, y: i32) -> usize {
+        (y * self.columns + x) as usize
     }
-    // The corners of the box around all samples stand for them.
-    let [least, most] = grid.offset_bounds;
-    let edges = Edges::<4>::new(&triangle.corners, &[[least; 2], [most, least], [least, most], [most; 2]]);
-    for y in first[1]..=last[1] {
-        for x in first[0]..=last[0] {
-            if !edges.misses(&grid.rect(tile(x, y))) {
-                found(tile(x, y));
+
+    /// The only tile, or [`MANY`] if there is not just one.
+    #[inline(always)]
+    fn only(&self) -> u32 {
+        if self.first == self.last { self.tile(self.first[0], self.first[1]) as u32 } else { MANY }
+    }
+
+    /// The tiles that the triangle may be seen in, row by row.
+    #[inline(always)]
+    fn for_each(&self, triangle: &ScreenTriangle, grid: &TileGrid, mut found: impl FnMut(usize)) {
+        let Self { first, last, .. } = *self;
+        if last[0] - first[0] <= 1 && last[1] - first[1] <= 1 {
+            (first[1]..=last[1]).for_each(|y| (first[0]..=last[0]).for_each(|x| found(self.tile(x, y))));
+            return;
+        }
+        // The corners of the box around all samples stand for them.
+        let [least, most] = grid.offset_bounds;
+        let edges = Edges::<4>::new(&triangle.corners, &[[least; 2], [most, least], [least, most], [most; 2]]);
+        for y in first[1]..=last[1] {
+            for x in first[0]..=last[0] {
+                if !edges.misses(&grid.rect(self.tile(x, y))) {
+                    found(self.tile(x, y));
+                }
             }
         }
     }

@@ -20,16 +20,30 @@ pub struct QuadBlock<'a> {
 impl<'a> QuadBlock<'a> {
     /// The quads two by two; a last lone one has no coverage in its other half.
     pub fn pairs(&self) -> impl Iterator<Item = QuadPair<'a>> {
-        let Self { material, tile, planes, .. } = *self;
-        self.quads.chunks(2).map(move |pair| {
-            let [first, second] = [&pair[0], &pair[pair.len() - 1]];
-            let mut coverage = [0; 8];
-            coverage[..4].copy_from_slice(&first.coverage);
-            if pair.len() == 2 {
-                coverage[4..].copy_from_slice(&second.coverage);
-            }
-            let origin = [first, second].map(|quad| [0, 1].map(|i| tile[i] + i32::from(quad.origin[i])));
-            QuadPair::new(material, origin, coverage, [first, second].map(|quad| &planes[quad.triangle as usize]))
-        })
+        let block = *self;
+        (0..self.num_pairs()).map(move |index| block.pair(index))
+    }
+
+    /// How many pairs there are.
+    #[must_use]
+    pub fn num_pairs(&self) -> usize {
+        self.quads.len().div_ceil(2)
+    }
+
+    /// One of [`Self::pairs`].
+    #[must_use]
+    #[inline(always)]
+    pub fn pair(&self, index: usize) -> QuadPair<'a> {
+        let Self { material, tile, planes, quads } = *self;
+        let first = &quads[2 * index];
+        let (second, coverage) = match quads.get(2 * index + 1) {
+            Some(second) => (second, second.coverage),
+            None => (first, [0; 4]),
+        };
+        let [a, b, c, d] = first.coverage;
+        let [e, f, g, h] = coverage;
+        let origin = [first, second].map(|quad| [0, 1].map(|i| tile[i] + i32::from(quad.origin[i])));
+        let planes = [first, second].map(|quad| &planes[quad.triangle as usize]);
+        QuadPair::new(material, origin, [a, b, c, d, e, f, g, h], planes)
     }
 }

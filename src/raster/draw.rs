@@ -3,15 +3,16 @@
 //! Each tile owns its rows of the frame, so tiles run in parallel without locks. What a tile needs while it is drawn lies in
 //! a [`Scratch`], taken from a pool and given back, so a steady frame allocates nothing for tiles or triangles.
 
+use super::attributes::PlaneMaker;
 use super::bin::{Bins, TileGrid};
 use super::block::{QuadBlock, SHADED_BLOCK};
 use super::edge::Rect;
 use super::gather::{SeenQuad, gather};
-use super::quad::{AttributePlanes, QuadPair};
+use super::quad::{AttributePlanes, QuadPair, covered};
 use super::scratch::{Borrowed, Scratch};
 use super::tile::NONE;
 use crate::frame::Frame;
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, ScreenTriangle};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::simd::PixelLanes;
@@ -21,13 +22,37 @@ use std::sync::Mutex;
 /// Linear RGB, premultiplied by the fourth component, the opacity.
 type Pixel = [f32; 4];
 
-/// What was drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What was drawn, and what it took. Times are in milliseconds, of all threads together but for `binning_ms`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RasterStats {
     /// Screen triangles that were left after culling and clipping; a clipped one may count as several.
     pub triangles_drawn: u64,
     /// Pixels shaded: once for each triangle that a sample of the pixel sees.
     pub pixels_shaded: u64,
+    /// Quads of 2x2 pixels shaded: once for each triangle that a sample of the quad sees.
+    pub quads_shaded: u64,
+    /// Listing the triangles of each tile, of the whole frame.
+    pub binning_ms: f64,
+    /// Coverage, depth and the quads that are seen.
+    pub coverage_ms: f64,
+    /// Attribute planes of the triangles that are seen.
+    pub attributes_ms: f64,
+    /// Shading.
+    pub shade_ms: f64,
+}
+
+impl RasterStats {
+    fn add(self, other: Self) -> Self {
+        Self {
+            triangles_drawn: self.triangles_drawn + other.triangles_drawn,
+            pixels_shaded: self.pixels_shaded + other.pixels_shaded,
+            quads_shaded: self.quads_shaded + other.quads_shaded,
+            binning_ms: self.binning_ms + other.binning_ms,
+            coverage_ms: self.coverage_ms + other.coverage_ms,
+            attributes_ms: self.attributes_ms + other.attributes_ms,
+            shade_ms: self.shade_ms + other.shade_ms,
+        }
+    }
 }
 
 /// Draws frames, and keeps its buffers between them.
@@ -46,37 +71,44 @@ pub fn draw(
     frame: &mut Frame,
 ) -> RasterStats {
     let shade = |block: &QuadBlock, colors: &mut Vec<_>| colors.extend(block.pairs().map(|pair| shade(&pair)));
-    Rasterizer::default().draw(geometry, scene, settings, &shade, frame)
+    Rasterizer::default().draw(geometry, (scene, settings), &shade, &|| 0.0, frame)
 }
 
 impl Rasterizer {
     /// Draws the triangles of `geometry`, which must have been projected from `scene` under `settings`. `shade` appends
-    /// the linear red, green and blue of eight pixels for each pair of a block, which must depend on that block only. The
-    /// frame is resized to the [area](TileGrid::area) of the tiles and overwritten.
+    /// the linear red, green and blue of eight pixels for each pair of a block, which must depend on that block only. `clock`
+    /// gives milliseconds. The frame is resized to the [area](TileGrid::area) of the tiles and overwritten.
     pub fn draw(
         &mut self,
         geometry: &Geometry,
-        scene: &Scene,
-        settings: &Settings,
+        (scene, settings): (&Scene, &Settings),
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
+        clock: &(dyn Fn() -> f64 + Sync),
         frame: &mut Frame,
     ) -> RasterStats {
         let grid = TileGrid::new(settings);
+        let start = clock();
         self.bins.fill(geometry, &grid);
+        let binning_ms = clock() - start;
         [frame.width, frame.height] = grid.area.size().map(|side| side as u32);
-        frame.pixels.resize(frame.width as usize * frame.height as usize, Pixel::default());
-        let painter = Painter { geometry, scene, settings, grid, bins: &self.bins };
+        let num_pixels = frame.width as usize * frame.height as usize;
+        let is_fresh = frame.pixels.len() != num_pixels;
+        if is_fresh {
+            // Zeros of the system's, which it hands out page by page to the threads that draw.
+            frame.pixels = vec![Pixel::default(); num_pixels];
+        }
+        let painter = Painter { geometry, scene, settings, grid, bins: &self.bins, clock, is_fresh };
         let scratches = &self.scratches;
         let mut rows = rows_by_tile(frame, &grid);
-        let pixels_shaded = rows
+        let tiles = rows
             .par_chunks_mut(grid.tile_size as usize)
             .enumerate()
             .map_init(
                 || Borrowed::new(scratches),
                 |scratch, (tile, rows)| painter.paint(tile, rows, scratch.get(), shade),
             )
-            .sum();
-        RasterStats { triangles_drawn: geometry.num_triangles() as u64, pixels_shaded }
+            .reduce(RasterStats::default, RasterStats::add);
+        RasterStats { triangles_drawn: geometry.num_triangles() as u64, binning_ms, ..tiles }
     }
 }
 
@@ -103,32 +135,47 @@ struct Painter<'a> {
     settings: &'a Settings,
     grid: TileGrid,
     bins: &'a Bins,
+    clock: &'a (dyn Fn() -> f64 + Sync),
+    /// Whether all pixels are 0 already.
+    is_fresh: bool,
 }
 
 impl Painter<'_> {
-    /// Draws a tile; gives how many pixels were shaded.
+    /// Draws a tile; gives what that took.
     fn paint(
         &self,
         tile: usize,
         rows: &mut [&mut [Pixel]],
         scratch: &mut Scratch,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
-    ) -> u64 {
+    ) -> RasterStats {
         let rect = self.grid.rect(tile);
         scratch.list.clear();
         self.bins.list(tile, &mut scratch.list);
-        rows.iter_mut().for_each(|row| row.fill(Pixel::default()));
+        if !self.is_fresh {
+            rows.iter_mut().for_each(|row| row.fill(Pixel::default()));
+        }
         if scratch.list.is_empty() {
             self.add_background(rows);
-            return 0;
+            return RasterStats::default();
         }
+        let start = (self.clock)();
         self.see(&rect, scratch);
+        let seen = (self.clock)();
         self.find_planes(scratch);
-        let num_shaded = self.shade_quads(&rect, rows, scratch, shade);
+        let found = (self.clock)();
+        let (pixels_shaded, shade_ms) = self.shade_quads(&rect, rows, scratch, shade);
         if !self.is_full(&rect, &scratch.quads) {
             self.add_background(rows);
         }
-        num_shaded
+        RasterStats {
+            pixels_shaded,
+            quads_shaded: scratch.quads.len() as u64,
+            coverage_ms: seen - start,
+            attributes_ms: found - seen,
+            shade_ms,
+            ..RasterStats::default()
+        }
     }
 
     /// Lists the quads that the tile sees.
@@ -151,50 +198,56 @@ impl Painter<'_> {
 
     /// Makes the attribute planes of the triangles seen.
     fn find_planes(&self, scratch: &mut Scratch) {
-        let Scratch { list, quads, slots, planes, materials, .. } = scratch;
+        let Scratch { list, quads, slots, planes, triangles, materials, .. } = scratch;
         slots.clear();
         slots.resize(list.len(), NONE);
+        quads.iter().for_each(|quad| slots[quad.triangle as usize] = 0);
+        triangles.clear();
         materials.clear();
-        for quad in quads.iter_mut() {
-            let slot = &mut slots[quad.triangle as usize];
-            if *slot == NONE {
-                *slot = materials.len() as u32;
-                if planes.len() == materials.len() {
-                    planes.push(AttributePlanes::default());
-                }
-                let triangle = self.geometry.triangle(list[quad.triangle as usize]);
-                planes[materials.len()].set(self.geometry, triangle, self.scene, self.settings);
-                materials.push(self.scene.meshes[triangle.mesh as usize].material as u32);
-            }
-            quad.triangle = *slot;
-            quad.material = materials[*slot as usize];
+        // In the list's order, neighbours in the mesh are neighbours here and find their vertices in the cache.
+        for (slot, &index) in slots.iter_mut().zip(list.iter()).filter(|(slot, _)| **slot != NONE) {
+            *slot = triangles.len() as u32;
+            let ScreenTriangle { mesh, triangle, .. } = *self.geometry.triangle(index);
+            triangles.push([mesh, triangle]);
+            materials.push(self.scene.meshes[mesh as usize].material as u32);
         }
+        for quad in quads.iter_mut() {
+            quad.triangle = slots[quad.triangle as usize];
+            quad.material = materials[quad.triangle as usize];
+        }
+        if planes.len() < triangles.len() {
+            planes.resize_with(triangles.len(), AttributePlanes::default);
+        }
+        PlaneMaker::new(self.geometry, self.scene, self.settings).fill(&mut planes[..triangles.len()], triangles);
     }
 
-    /// Shades the quads block by block and adds their colours to the pixels.
+    /// Shades the quads block by block and adds their colours to the pixels; gives how many pixels that was, and what the
+    /// shading took.
     fn shade_quads(
         &self,
         rect: &Rect,
         rows: &mut [&mut [Pixel]],
         scratch: &mut Scratch,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
-    ) -> u64 {
+    ) -> (u64, f64) {
         let Scratch { quads, planes, colors, .. } = scratch;
         let share = 1.0 / self.settings.msaa as f32;
         let block_of = |quad: &SeenQuad| quad.origin.map(|c| usize::from(c) / SHADED_BLOCK);
-        let mut num_shaded = 0;
+        let (mut num_shaded, mut shade_ms) = (0, 0.0);
         for block in quads.chunk_by_mut(|a, b| block_of(a) == block_of(b)) {
             // The stable sort keeps the order of places and triangles.
             block.sort_by_key(|quad| quad.material);
             for quads in block.chunk_by(|a, b| a.material == b.material) {
                 colors.clear();
+                let start = (self.clock)();
                 shade(&QuadBlock { material: quads[0].material as usize, tile: rect.min, quads, planes }, colors);
+                shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {
                     num_shaded += add(rows, pair, share, color);
                 }
             }
         }
-        num_shaded
+        (num_shaded, shade_ms)
     }
 
     /// Whether every sample of the tile sees a triangle.
@@ -224,19 +277,14 @@ fn add(rows: &mut [&mut [Pixel]], pair: &[SeenQuad], share: f32, colors: &[Pixel
     let mut num = 0;
     for (i, quad) in pair.iter().enumerate() {
         let [x, y] = quad.origin.map(usize::from);
-        for half in 0..2 {
+        for lane in covered(u64::from(u32::from_le_bytes(quad.coverage))) {
             // Below the frame's last row there may be none, or an empty one.
-            let Some(row) = rows.get_mut(y + half).and_then(|row| row.get_mut(x..)) else { continue };
-            for (column, pixel) in row.iter_mut().take(2).enumerate() {
-                let lane = 2 * half + column;
-                let share = f32::from(quad.coverage[lane]) * share;
-                if share > 0.0 {
-                    let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);
-                    (0..3).for_each(|c| pixel[c] += color[c]);
-                    pixel[3] += share;
-                    num += 1;
-                }
-            }
+            let Some(pixel) = rows.get_mut(y + lane / 2).and_then(|row| row.get_mut(x + lane % 2)) else { continue };
+            let share = f32::from(quad.coverage[lane]) * share;
+            let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);
+            (0..3).for_each(|c| pixel[c] += color[c]);
+            pixel[3] += share;
+            num += 1;
         }
     }
     num

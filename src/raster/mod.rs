@@ -16,6 +16,7 @@ mod edge;
 mod gather;
 mod quad;
 mod scratch;
+mod small;
 mod tile;
 
 pub use bin::{Bins, TileGrid, hit_counts};

@@ -86,13 +86,19 @@ impl AttributePlanes {
 impl<'a> QuadPair<'a> {
     /// Two quads with their attributes at the pixel centres.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn new(material: usize, origin: [[i32; 2]; 2], coverage: [u8; 8], planes: [&'a AttributePlanes; 2]) -> Self {
         let [x, y] = centers(origin);
         let at = Places { x, y, planes };
         let w = at.w();
         let (uv, view) = (at.attributes(w, |planes| &planes.uv), at.attributes(w, |planes| &planes.view));
         Self { material, origin, coverage, planes, uv, view }
+    }
+
+    /// The lanes whose pixels see the triangle, in order.
+    #[inline(always)]
+    pub fn covered(&self) -> impl Iterator<Item = usize> + use<> {
+        covered(u64::from_le_bytes(self.coverage))
     }
 
     /// The pixel centres on the screen, in pixels: x, y.
@@ -111,7 +117,17 @@ impl<'a> QuadPair<'a> {
     }
 }
 
-#[inline]
+/// The places of the bytes that are not 0, lowest first.
+#[inline(always)]
+pub(super) fn covered(mut bytes: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bytes.trailing_zeros() / 8;
+        bytes &= !(0xff_u64.checked_shl(8 * lane)?);
+        Some(lane as usize)
+    })
+}
+
+#[inline(always)]
 fn centers(origin: [[i32; 2]; 2]) -> [PixelLanes; 2] {
     let [[x0, y0], [x1, y1]] = origin.map(|quad| quad.map(|v| v as f32));
     let dx = PixelLanes::new([0.5, 1.5, 0.5, 1.5, 0.5, 1.5, 0.5, 1.5]);

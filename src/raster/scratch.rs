@@ -20,6 +20,8 @@ pub(super) struct Scratch {
     pub(super) slots: Vec<u32>,
     /// The triangles seen, in the order in which quads found them.
     pub(super) planes: Vec<AttributePlanes>,
+    /// Mesh of each slot, and the triangle's index in it.
+    pub(super) triangles: Vec<[u32; 2]>,
     /// Material of each slot.
     pub(super) materials: Vec<u32>,
     /// Colours of the pairs of a block.

@@ -8,6 +8,7 @@
 
 mod patches;
 mod quads;
+mod square;
 mod tables;
 
 use crate::error::Result;
@@ -17,20 +18,28 @@ use crate::raster::{QuadBlock, Rasterizer, TileGrid};
 use crate::scene::{Camera, Scene};
 use crate::settings::{Region, Settings};
 use quads::QuadShader;
-use std::sync::atomic::{AtomicU64, Ordering};
 use tables::Tables;
 
-/// What drawing a frame took. Times are of the whole frame for `geometry_ms`, and of all threads together for the others.
+/// What drawing a frame took, in milliseconds: of the whole frame for `geometry_ms`, `raster_ms` and `binning_ms`, of all
+/// threads together for the others.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stats {
-    /// Projecting, clipping and snapping, in milliseconds.
+    /// Projecting, clipping and snapping.
     pub geometry_ms: f64,
-    /// Coverage and depth, in milliseconds.
+    /// All that is neither geometry nor shading: the next three, and adding up colours.
     pub raster_ms: f64,
-    /// Relief, filter and light, in milliseconds.
+    /// Listing the triangles of each tile.
+    pub binning_ms: f64,
+    /// Coverage, depth and the quads that are seen.
+    pub coverage_ms: f64,
+    /// Attribute planes of the triangles that are seen.
+    pub attributes_ms: f64,
+    /// Relief, filter and light.
     pub shade_ms: f64,
     /// Pixels shaded; a pixel that two triangles share counts twice.
     pub pixels_shaded: u64,
+    /// Quads of 2x2 pixels shaded; one that two triangles share counts twice.
+    pub quads_shaded: u64,
     /// Triangles of the scene.
     pub triangles_in: u64,
     /// Triangles that reached the screen.
@@ -124,26 +133,24 @@ impl Renderer {
         geometry.project(scene, settings);
         let projected = clock();
         let shader = QuadShader::new(scene, settings, tables);
-        let shade_ns = AtomicU64::new(0);
-        let shade = |block: &QuadBlock, colors: &mut Vec<_>| {
-            let before = clock();
-            shader.shade(block, colors);
-            shade_ns.fetch_add(((clock() - before) * 1e6) as u64, Ordering::Relaxed);
-        };
+        let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
         let mut frame = Frame { width: 0, height: 0, pixels: Vec::new() };
-        let counts = rasterizer.draw(geometry, scene, settings, &shade, &mut frame);
+        let counts = rasterizer.draw(geometry, (scene, settings), &shade, clock, &mut frame);
         if let Some(region) = settings.region {
             // The tiles cover whole blocks, which begin a few pixels before the region.
             let [x, y] = TileGrid::new(settings).area.min.map(|v| v as u32);
             frame.crop(Region { x: region.x - x, y: region.y - y, ..region });
         }
-        let shade_ms = shade_ns.into_inner() as f64 * 1e-6;
         let [texels_tested, texels_visible] = shader.num_texels();
         let stats = Stats {
             geometry_ms: projected - start,
-            raster_ms: (clock() - projected - shade_ms / rayon::current_num_threads() as f64).max(0.0),
-            shade_ms,
+            raster_ms: (clock() - projected - counts.shade_ms / rayon::current_num_threads() as f64).max(0.0),
+            binning_ms: counts.binning_ms,
+            coverage_ms: counts.coverage_ms,
+            attributes_ms: counts.attributes_ms,
+            shade_ms: counts.shade_ms,
             pixels_shaded: counts.pixels_shaded,
+            quads_shaded: counts.quads_shaded,
             triangles_in: scene.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum(),
             triangles_drawn: counts.triangles_drawn,
             texels_tested,

@@ -1,7 +1,7 @@
 //! The colour of two quads: view slope, hits, footprints, texels, light.
 
 use super::tables::Tables;
-use crate::filter::{self, Filtered, TexelSet, isotropic, parallax, truth};
+use crate::filter::{self, Differences, Filtered, TexelSet, isotropic, parallax, truth};
 use crate::raster::{LitPlanes, QuadBlock, QuadPair};
 use crate::relief::{HeightField, displacement, march};
 use crate::scene::{Material, Scene};
@@ -45,6 +45,9 @@ impl<'a> QuadShader<'a> {
             Some(surface) if self.settings.filter == Filter::Horizon => {
                 self.horizon(&Ground { material, surface, field }, block, colors);
             }
+            Some(surface) if self.settings.filter == Filter::Trilinear && self.settings.lighting == Lighting::Unlit => {
+                self.trilinear(&Ground { material, surface, field }, block, colors);
+            }
             surface => colors.extend(block.pairs().map(|pair| {
                 let colors = match surface {
                     None => each_covered(&pair, |lane| self.plain(&pair, material, lane)),
@@ -68,14 +71,23 @@ impl<'a> QuadShader<'a> {
         }
     }
 
+    /// Where the rays of a pair hit the relief, in repeats, and the differences there.
+    #[inline]
+    pub(super) fn hits(&self, ground: &Ground, pair: &QuadPair) -> ([PixelLanes; 2], Differences) {
+        let offset = ground.field.map_or([PixelLanes::ZERO; 2], |field| {
+            let reach = ground.reach(pair);
+            let depth = march(field, &pair.uv, &reach);
+            reach.map(|reach| reach * depth)
+        });
+        let place = [pair.uv[0] + offset[0], pair.uv[1] + offset[1]];
+        (place, filter::differences_for(&pair.uv, &offset, self.settings))
+    }
+
     /// The filters that put the footprint around the hit.
     fn at_hits(&self, ground: &Ground, pair: &QuadPair) -> [Vec3; 8] {
         let Ground { surface, field, .. } = *ground;
-        let reach = &ground.reach(pair);
-        let depth = field.map_or(PixelLanes::ZERO, |field| march(field, &pair.uv, reach));
-        let offset = [reach[0] * depth, reach[1] * depth];
-        let place = [pair.uv[0] + offset[0], pair.uv[1] + offset[1]];
-        let differences = filter::differences_for(&pair.uv, &offset, self.settings);
+        let (place, differences) = self.hits(ground, pair);
+        let reach = field.map(|_| ground.reach(pair));
         let mut set = TexelSet::default();
         let mut num_texels = [0; 2];
         let colors = each_covered(pair, |lane| {
@@ -92,7 +104,7 @@ impl<'a> QuadShader<'a> {
                     mean
                 }
                 _ => {
-                    let reach = field.map(|_| reach.map(|lanes| lanes.as_array()[lane]));
+                    let reach = reach.map(|reach| reach.map(|lanes| lanes.as_array()[lane]));
                     let (mean, counts) = filter::ellipse_mean(surface, &footprint, reach, self.settings, &mut set);
                     num_texels = [num_texels[0] + counts[0], num_texels[1] + counts[1]];
                     mean

@@ -5,6 +5,7 @@
 //! marks and bytes that are not UTF-8 are replaced, and no line is read past [`MAX_LINE_BYTES`].
 
 use crate::error::{Error, Result};
+use std::borrow::Cow;
 use std::io::{self, BufRead, Read};
 use std::path::{Path, PathBuf};
 
@@ -82,7 +83,8 @@ impl<R: BufRead, C: Clean> CleanLines<R, C> {
             self.raw.push(b' ');
             self.num_read += 1;
         }
-        let text = String::from_utf8_lossy(&self.raw);
+        // Checked first, which is many times faster than to look for what must be replaced.
+        let text = std::str::from_utf8(&self.raw).map_or_else(|_| String::from_utf8_lossy(&self.raw), Cow::Borrowed);
         let text = text.trim_start_matches('\u{feff}').trim();
         self.cleaner.clean(text, Place { path: &self.path, line: self.num_read }, &mut self.clean)?;
         Ok(true)

@@ -142,7 +142,9 @@ impl<'a> ObjLines<'a> {
             let _ = writeln!(out, "o {}", self.name);
         }
         if [scan.num_tex_coords, scan.num_normals].iter().all(|&num| num == 0 || num == scan.num) {
-            let _ = writeln!(out, "f {text}");
+            out.push_str("f ");
+            out.push_str(text);
+            out.push('\n');
         } else {
             write_face(text, corners, out);
         }
@@ -165,21 +167,33 @@ impl<'a> ObjLines<'a> {
     /// Counts corners and what they name; refuses 0 and what lies before the first of a list.
     fn scan(&self, text: &str) -> std::result::Result<Scan, String> {
         let mut scan = Scan::default();
-        for corner in text.split_ascii_whitespace() {
-            scan.num += 1;
-            for (i, index) in corner.split('/').enumerate() {
-                let num = match i {
-                    0 => self.num_positions,
-                    1 => self.num_tex_coords,
-                    _ => self.num_normals,
-                };
-                match index.as_bytes().first() {
-                    None => continue,
-                    Some(b'0' | b'-') => check_index(index, num)?,
-                    Some(_) => {}
+        let is_end = |byte: &u8| *byte == b'/' || byte.is_ascii_whitespace();
+        // Which number of a corner is read, and whether a byte of the corner and of the number were seen.
+        let (mut part, mut is_corner, mut is_number) = (0, false, false);
+        for (at, byte) in text.bytes().enumerate() {
+            if byte.is_ascii_whitespace() {
+                (is_corner, is_number) = (false, false);
+                continue;
+            }
+            if !is_corner {
+                (is_corner, part) = (true, 0);
+                scan.num += 1;
+            }
+            if byte == b'/' {
+                (part, is_number) = (part + 1, false);
+            } else if !is_number {
+                is_number = true;
+                if matches!(byte, b'0' | b'-') {
+                    let len = text.as_bytes()[at..].iter().position(&is_end).unwrap_or(text.len() - at);
+                    let num = match part {
+                        0 => self.num_positions,
+                        1 => self.num_tex_coords,
+                        _ => self.num_normals,
+                    };
+                    check_index(&text[at..at + len], num)?;
                 }
-                scan.num_tex_coords += u64::from(i == 1);
-                scan.num_normals += u64::from(i == 2);
+                scan.num_tex_coords += u64::from(part == 1);
+                scan.num_normals += u64::from(part == 2);
             }
         }
         Ok(scan)
@@ -217,10 +231,17 @@ fn write_face(text: &str, corners: Corners, out: &mut String) {
     out.push('\n');
 }
 
+/// The text before the first `#`.
+fn without_comment(text: &str) -> &str {
+    if text.as_bytes().contains(&b'#') { text.split('#').next().unwrap_or_default() } else { text }
+}
+
 /// Writes a line of numbers; a position with a colour behind it loses the colour.
 fn write_numbers(keyword: &str, numbers: &str, out: &mut String) {
     out.push_str(keyword);
-    if keyword == "v" && numbers.split_ascii_whitespace().nth(4).is_some() {
+    // Five numbers have four gaps at least.
+    let num_spaces = numbers.bytes().filter(u8::is_ascii_whitespace).count();
+    if keyword == "v" && num_spaces > 3 && numbers.split_ascii_whitespace().nth(4).is_some() {
         for number in numbers.split_ascii_whitespace().take(3) {
             out.push(' ');
             out.push_str(number);
@@ -234,13 +255,14 @@ fn write_numbers(keyword: &str, numbers: &str, out: &mut String) {
 
 impl Clean for ObjLines<'_> {
     fn clean(&mut self, text: &str, at: Place<'_>, out: &mut String) -> Result<()> {
-        let (keyword, rest) = text.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((text, ""));
+        let end = text.bytes().position(|byte| byte.is_ascii_whitespace()).unwrap_or(text.len());
+        let (keyword, rest) = (&text[..end], text.get(end + 1..).unwrap_or_default());
         match keyword {
             "v" | "vt" | "vn" => {
                 self.count(keyword, at)?;
-                write_numbers(keyword, rest.split('#').next().unwrap_or_default(), out);
+                write_numbers(keyword, without_comment(rest), out);
             }
-            "f" => self.face(rest.split('#').next().unwrap_or_default().trim(), at, out)?,
+            "f" => self.face(without_comment(rest).trim(), at, out)?,
             "o" | "g" => {
                 self.name = rest.trim().into();
                 let _ = writeln!(out, "o {}", self.name);

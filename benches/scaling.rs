@@ -1,0 +1,94 @@
+//! How the time of a frame grows: with threads, pixels, triangles, texels and objects. Prints ratios of the fastest frames.
+//!
+//! `cargo bench --bench scaling`, on an idle machine; `-- NAME` runs what begins so.
+
+mod scenes;
+
+use basrelief::{Filter, Renderer, Scene, Settings};
+use rayon::ThreadPoolBuilder;
+use scenes::{floor, objects, stones, terrain, textured};
+use std::time::Instant;
+
+/// Frames of which the fastest counts: what else the machine does only makes frames slower.
+const NUM_FRAMES: usize = 15;
+
+fn settings(filter: Filter) -> Settings {
+    Settings { filter, msaa: 1, ..Settings::default() }
+}
+
+/// Milliseconds of the fastest frame.
+fn time(scene: Scene, settings: Settings, num_threads: usize) -> f64 {
+    let pool = ThreadPoolBuilder::new().num_threads(num_threads).build().expect("threads");
+    let mut renderer = Renderer::new(scene, settings).expect("a valid scene");
+    let frame = || {
+        let start = Instant::now();
+        pool.install(|| renderer.render());
+        start.elapsed().as_secs_f64() * 1e3
+    };
+    std::iter::repeat_with(frame).take(NUM_FRAMES).fold(f64::INFINITY, f64::min)
+}
+
+fn report(name: &str, wanted: &str, [less, more]: [f64; 2]) {
+    println!("{name:<40} {less:>9.2} ms {more:>9.2} ms   ratio {:.2}   wanted {wanted}", more / less);
+}
+
+/// Two threads beside one.
+fn threads() {
+    let wanted = "at most 0.53";
+    let hills = textured(terrain(707), stones(1024, 1, 0.0), 4.0);
+    let road = textured(floor(), stones(1024, 1, 0.05), 1.0);
+    for (name, scene, filter) in
+        [("threads/1m_triangles", hills, Filter::Trilinear), ("threads/floor", road, Filter::Horizon)]
+    {
+        report(name, wanted, [1, 2].map(|num| time(scene.clone(), settings(filter), num)));
+    }
+}
+
+/// Four times the pixels.
+fn pixels() {
+    let road = textured(floor(), stones(1024, 1, 0.05), 1.0);
+    for (name, filter) in [("pixels/trilinear", Filter::Trilinear), ("pixels/horizon", Filter::Horizon)] {
+        let times = [(960, 540), (1920, 1080)]
+            .map(|(width, height)| time(road.clone(), Settings { width, height, ..settings(filter) }, 1));
+        report(name, "at most 4.2", times);
+    }
+}
+
+/// Ten times the triangles.
+fn triangles() {
+    let times =
+        [224, 707].map(|side| time(textured(terrain(side), stones(1024, 1, 0.0), 4.0), settings(Filter::Trilinear), 1));
+    report("triangles/trilinear", "at most 10", times);
+}
+
+/// Sixty-four times the texels, with footprints of as many texels.
+fn texels() {
+    let scene = |size: u32| textured(floor(), stones(size, 1, 0.05), 1024.0 / size as f32);
+    for (name, filter) in [("texels/trilinear", Filter::Trilinear), ("texels/horizon", Filter::Horizon)] {
+        // Tables are made for small maps only, and would spare the small map its sweeps.
+        let settings = Settings { far_field: false, ..settings(filter) };
+        report(name, "at most 1.3", [1024, 8192].map(|size| time(scene(size), settings.clone(), 1)));
+    }
+}
+
+/// 2025 objects with a material each and 64 surfaces beside one object with one.
+fn many_objects() {
+    let surfaces: Vec<_> = (0..64).map(|seed| stones(256, seed, 0.05)).collect();
+    for (name, filter) in [("objects/trilinear", Filter::Trilinear), ("objects/horizon", Filter::Horizon)] {
+        let settings = Settings { far_field: false, ..settings(filter) };
+        let one = time(objects(224, 1, &surfaces[..1]), settings.clone(), 1);
+        report(name, "-", [one, time(objects(224, 45, &surfaces), settings, 1)]);
+    }
+}
+
+fn main() {
+    let wanted = std::env::args().skip(1).find(|argument| !argument.starts_with('-')).unwrap_or_default();
+    let all: [(&str, fn()); 5] = [
+        ("threads", threads),
+        ("pixels", pixels),
+        ("triangles", triangles),
+        ("texels", texels),
+        ("objects", many_objects),
+    ];
+    all.iter().filter(|(name, _)| name.starts_with(&wanted)).for_each(|(_, run)| run());
+}
