@@ -73,7 +73,8 @@ pub(crate) struct FilterOptions {
     /// For --filter ewa: where the Gaussian is cut, in pixels, 1 to 1.5; 1 is the paper's ellipse [default: 1]
     #[arg(long, value_name = "R", value_parser = values::number, allow_hyphen_values = true)]
     cut: Option<f32>,
-    /// For --filter ewa: added to A and C of formula (1) for the texels' own kernel, 0.25 to 1 [default: 2/3]
+    /// For --filter ewa: added to A and C of formula (1) for the texels' own kernel, 0.25 to 1; 2/3 is bilinear
+    /// interpolation, 1 Heckbert's [default: 0.6666667]
     #[arg(long, value_name = "S", value_parser = values::number, allow_hyphen_values = true)]
     texel_kernel: Option<f32>,
     /// Longest ellipse, as the ratio of its axes, 1 to 1e6; longer ones are widened [default: 64]
@@ -239,7 +240,7 @@ mod tests {
                 line.push(format!("--{}={default}", arg.get_long().unwrap()));
             }
         }
-        assert_eq!(line.len(), 15, "{line:?}");
+        assert_eq!(line.len(), 17, "{line:?}");
         assert_eq!(parse(&line.join(" ")).unwrap(), Settings::default());
     }
 
@@ -252,9 +253,9 @@ mod tests {
 
     #[test]
     fn each_option_sets_its_field() {
-        let line = "--size 64x36 --region 8,4,32,16 --msaa 4 --cull --tile 16 --lighting lit --filter horizon \
+        let line = "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --lighting lit --filter horizon \
                     --visible two-ended --parallax off --derivatives flat --formulas printed --texel-budget 0 \
-                    --max-anisotropy 8 --max-stretch 3 \
+                    --cut 1.25 --texel-kernel 0.5 --max-anisotropy 8 --max-stretch 3 \
                     --samples 5 --lines 6 --far-field off --far-field-mib 7";
         let expected = Settings {
             width: 64,
@@ -276,7 +277,7 @@ mod tests {
             far_field_mib: 7,
             lighting: Lighting::Lit,
             cull_back_faces: true,
-            msaa: 4,
+            msaa: 8,
             tile_size: 16,
         };
         assert_eq!(parse(line).unwrap(), expected);
@@ -291,6 +292,8 @@ mod tests {
             ("--far-field-mib 0", "--far-field-mib"),
             ("--max-anisotropy nan", "--max-anisotropy"),
             ("--max-anisotropy 0.5", "--max-anisotropy"),
+            ("--cut 2", "--cut"),
+            ("--texel-kernel 0", "--texel-kernel"),
             ("--max-stretch 0.5", "--max-stretch"),
             ("--max-stretch nan", "--max-stretch"),
             ("--msaa 3", "--msaa"),
