@@ -51,7 +51,8 @@ fn choose_level(surface: &Surface, footprint: &Footprint, settings: &Settings) -
     // Square texels of the base level in one of the level.
     let mut area = 1.0;
     let is_wide = |area: f32| short > LEAST_SHORT * LEAST_SHORT * 4.0 * area;
-    let holds_more = |area: f32| short * long > (most * area) * (most * area) * (FRAC_1_PI * FRAC_1_PI);
+    let wide = (short + settings.texel_kernel) * (long + settings.texel_kernel);
+    let holds_more = |area: f32| wide > (most * area) * (most * area) * (FRAC_1_PI * FRAC_1_PI);
     while index < last && (is_wide(area) || holds_more(area)) {
         (index, area) = (index + 1, area * 4.0);
     }
