@@ -132,7 +132,7 @@ impl Geometry {
     }
 
     /// The triangles of a chunk with their indices, which grow in order but not by one.
-    pub fn chunk(&self, chunk: usize) -> impl Iterator<Item = (u32, &ScreenTriangle)> {
+    pub fn chunk(&self, chunk: usize) -> impl ExactSizeIterator<Item = (u32, &ScreenTriangle)> {
         let first = (chunk as u32) << INDEX_BITS;
         self.chunks[chunk].iter().enumerate().map(move |(i, triangle)| (first | i as u32, triangle))
     }

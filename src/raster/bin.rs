@@ -91,6 +91,7 @@ impl Group {
         self.starts.clear();
         self.starts.resize(grid.num() + 1, 0);
         self.tiles.clear();
+        self.tiles.reserve_exact(chunks.clone().map(|chunk| geometry.chunk(chunk).len()).sum());
         for (_, triangle) in chunks.clone().flat_map(|chunk| geometry.chunk(chunk)) {
             let range = TileRange::new(triangle, grid);
             self.tiles.push(range.only());

@@ -1,0 +1,93 @@
+//! How much memory a frame and a surface take, at their peak.
+
+mod common;
+
+use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
+use basrelief::{Camera, Filter, Material, Mesh, Renderer, Scene, Settings};
+use common::{Random, flat_surface, floor_scene};
+use glam::Vec3;
+use peak_alloc::PeakAlloc;
+
+#[global_allocator]
+static HEAP: PeakAlloc = PeakAlloc;
+
+/// What does not grow with the scene: buffers of one tile, and of threads.
+const CONSTANT: usize = 4 << 20;
+
+/// Bytes a texel that a surface and its height field take, and that building it takes with its images; the goal is 24 for both.
+const KEPT: f64 = 27.0;
+const BUILT: f64 = 42.0;
+
+/// Bytes that `run` has on the heap at its peak, beyond what was there before, and its result.
+fn peak<T>(run: impl FnOnce() -> T) -> (usize, T) {
+    HEAP.reset_peak_usage();
+    let before = HEAP.current_usage();
+    let result = run();
+    (HEAP.peak_usage() - before, result)
+}
+
+/// A grid of `2 * side^2` triangles that fills the frame, all of them seen.
+fn grid(side: u32) -> Scene {
+    let num = side + 1;
+    let position = |i: u32| Vec3::new((i % num) as f32 / side as f32 - 0.5, 0.5 - (i / num) as f32 / side as f32, 0.0);
+    let cells = (0..side * num).filter(|i| i % num != side);
+    let triangles = cells.flat_map(|i| [[i, i + num, i + 1], [i + 1, i + num, i + num + 1]]).collect();
+    let mesh = Mesh::new((0..num * num).map(position).collect(), vec![], vec![], triangles);
+    let camera = Camera { eye: Vec3::new(0.0, 0.0, 0.5), target: Vec3::ZERO, fov_degrees: 90.0, ..Camera::default() };
+    Scene { meshes: vec![mesh], materials: vec![Material::default()], camera, ..Scene::default() }
+}
+
+/// The first frame of a renderer, which fills its buffers, on two threads.
+fn frame(scene: Scene, settings: Settings) -> usize {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+    let mut renderer = Renderer::new(scene, settings).expect("a valid scene");
+    pool.install(|| peak(|| renderer.render()).0)
+}
+
+/// A surface without normals, as the program makes them where there is no light.
+fn surface(size: u32, relief_depth: f32) -> Surface {
+    let mut random = Random(1);
+    let albedo = ColorImage::from_fn(size, size, |_, _| [0; 3].map(|_| random.within(0.0, 1.0)));
+    let heights = (relief_depth > 0.0).then(|| HeightImage::from_fn(size, size, |_, _| random.within(0.0, 1.0)));
+    let maps = SurfaceMaps {
+        albedo: Some(albedo),
+        height: heights,
+        relief_depth,
+        keep_normals: false,
+        ..SurfaceMaps::default()
+    };
+    Surface::new(maps).expect("valid maps")
+}
+
+/// One test, since the heap is counted for the whole process.
+#[test]
+fn memory_is_bounded() {
+    let settings = Settings { width: 1024, height: 1024, filter: Filter::Trilinear, ..Settings::default() };
+    let num_triangles = 2 * 400 * 400;
+    let few = frame(grid(1), settings.clone());
+    let many = frame(grid(400), settings.clone());
+    let per_triangle = (many - few) as f64 / f64::from(num_triangles);
+    println!("{per_triangle:.1} bytes a triangle beyond the mesh");
+    assert!(per_triangle <= 64.0, "{per_triangle} bytes a triangle");
+
+    let floor = || floor_scene(flat_surface(16, 16, Wrap::Repeat, 1), 1.0);
+    let pixels = frame(floor(), Settings { width: 2048, height: 2048, ..settings });
+    let per_sample = pixels.saturating_sub(CONSTANT) as f64 / f64::from(4 * 2048 * 2048);
+    println!("{per_sample:.1} bytes a pixel and sample, of four");
+    assert!(per_sample <= 12.0, "{per_sample} bytes a pixel and sample");
+
+    for (name, relief_depth) in [("flat", 0.0), ("relief", 0.1)] {
+        let (most, surface) = peak(|| surface(1024, relief_depth));
+        let kept = surface.num_bytes();
+        let before = HEAP.current_usage();
+        let scene = floor_scene(surface, 1.0);
+        let renderer =
+            Renderer::new(scene, Settings { far_field: false, ..Settings::default() }).expect("a valid scene");
+        let tables = HEAP.current_usage() - before;
+        drop(renderer);
+        let [most, kept, tables] = [most, kept, tables].map(|bytes| bytes as f64 / f64::from(1024 * 1024));
+        println!("{name}: {kept:.1} bytes a texel, and {tables:.1} of tables; {most:.1} while it is built");
+        assert!(kept + tables <= KEPT, "{name}: {} bytes a texel", kept + tables);
+        assert!(most <= BUILT, "{name}: {most} bytes a texel while it is built");
+    }
+}
