@@ -9,7 +9,7 @@ use basrelief::invariants::{Pixel, visible_sets};
 use basrelief::metrics::compare;
 use basrelief::raster::{AttributePlanes, QuadPair};
 use basrelief::relief::{HeightField, displacement, march};
-use basrelief::texture::{Surface, SurfaceMaps};
+use basrelief::texture::{Surface, SurfaceMaps, srgb_from_linear};
 use basrelief::{Camera, Derivatives, Filter, Frame, Renderer, Scene, Settings, Visibility};
 use common::{cobbles, floor_scene};
 use std::sync::OnceLock;
@@ -163,6 +163,23 @@ fn horizon_is_steady_in_motion() {
     // A twentieth, over 60 frames too.
     println!("mean square of the error's change: horizon {horizon:e}, parallax with 4 rays {parallax:e}");
     assert!(horizon < 0.1 * parallax, "{horizon:e} against {parallax:e}");
+}
+
+/// Where the floor goes from one mip level to the next, the mean error of a row does not jump by a step of 8-bit colour.
+#[test]
+fn changes_of_level_are_not_seen() {
+    let size = |filter| Settings { width: 320, height: 180, samples: 64, ..settings(filter) };
+    let row_means = |filter| {
+        let frame = draw(size(filter));
+        let srgb = |pixel: &[f32; 4]| pixel[..3].iter().map(|c| f64::from(srgb_from_linear(*c))).sum::<f64>() / 3.0;
+        let rows = frame.pixels.chunks(frame.width as usize);
+        rows.map(|row| row.iter().map(srgb).sum::<f64>() / row.len() as f64).collect::<Vec<_>>()
+    };
+    let (truth, horizon) = (row_means(Filter::Truth), row_means(Filter::Horizon));
+    let errors: Vec<_> = horizon.iter().zip(&truth).map(|(a, b)| a - b).collect();
+    let step = errors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+    println!("greatest step of a row's mean error: {step:.5}");
+    assert!(step < 1.0 / 255.0, "{step}");
 }
 
 /// Thin footprints at the skyline once fell between the texels of a table, and were black.
