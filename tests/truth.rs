@@ -131,7 +131,7 @@ fn unrest(settings: &Settings, truths: &[Frame]) -> f64 {
         .map(|(frame, truth)| {
             let channels =
                 |frame: &Frame| frame.pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect::<Vec<_>>();
-            let encoded = |c: f32| basrelief::texture::srgb_from_linear(c.clamp(0.0, 1.0));
+            let encoded = |c: f32| srgb_from_linear(c.clamp(0.0, 1.0));
             channels(&frame).into_iter().zip(channels(truth)).map(|(a, b)| encoded(a) - encoded(b)).collect()
         })
         .collect();

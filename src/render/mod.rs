@@ -44,7 +44,7 @@ pub struct Stats {
     pub triangles_in: u64,
     /// Triangles that reached the screen.
     pub triangles_drawn: u64,
-    /// Texels whose visibility was tested; rows of eight lines for the horizon.
+    /// Texels whose visibility was tested; rows of sixteen lines for the horizon.
     pub texels_tested: u64,
     /// Texels that were averaged.
     pub texels_visible: u64,

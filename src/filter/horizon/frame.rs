@@ -25,7 +25,7 @@ use crate::texture::{Level, Surface};
 const FLAT: f32 = 1.0 / 64.0;
 
 /// How far, in radii of its ellipse and squared, a pixel's displacement may be from what the lines take it for.
-const MOST_MISFIT: f32 = 0.1;
+const MOST_MISFIT: f32 = 0.25;
 
 /// Least and greatest distance between lines over that in the middle of the patch.
 const SPREAD: [f32; 2] = [0.6, 1.6];
@@ -52,6 +52,8 @@ pub(super) struct Frame<'a> {
     pub(super) depth: f32,
     pub(super) growth: f32,
     pub(super) tilt: f32,
+    /// Mean depth of the surface, 0 to 1.
+    mean_depth: f32,
 }
 
 /// A vector of pixels on the lines of a frame: the ellipse at line `xi` and seen row `p` has
@@ -116,7 +118,21 @@ impl<'a> Frame<'a> {
         let toward = if dy < 0.0 { -1.0 } else { 1.0 };
         let (depth, shear) = if is_flat { (0.0, 0.0) } else { (dy.abs(), dx / dy * toward) };
         let origin = [0, 1].map(|i| middle[i] * texels[i] - 0.5);
-        Self { level, is_turned, texels, middle, origin, toward, shear, spread: 0.0, depth, growth: 0.0, tilt: 0.0 }
+        let mean_depth = surface.levels.last().map_or(0.0, |level| 1.0 - level.height_at(0, 0));
+        Self {
+            level,
+            is_turned,
+            texels,
+            middle,
+            origin,
+            toward,
+            shear,
+            spread: 0.0,
+            depth,
+            growth: 0.0,
+            tilt: 0.0,
+            mean_depth,
+        }
     }
 
     fn turn<T>(&self, [u, v]: [T; 2]) -> [T; 2] {
@@ -158,14 +174,14 @@ impl<'a> Frame<'a> {
         }
         let mut misfit = PixelLanes::ZERO;
         for ((pixels, conic), &picked) in pixels.iter().zip(conics).zip(picked) {
-            let [[x, q], [along, across]] = self.growths(pixels);
-            let ry = along - q * self.growth - x * self.tilt;
-            let rx = across - x * (self.spread * self.depth) + ry * self.shear;
+            let [rx, ry] = self.residuals(pixels);
             let ([a, c], b) = (self.turn([conic.a, conic.c]), conic.b * self.toward);
             let r2 = (a * rx * rx + b * rx * ry + c * ry * ry) / conic.f;
             misfit = misfit.fast_max(r2 & picked);
         }
-        let is_fit = misfit.simd_le(PixelLanes::splat(MOST_MISFIT)).all();
+        // At the mean depth there is none, see `kernels`.
+        let farthest = self.mean_depth.max(1.0 - self.mean_depth);
+        let is_fit = misfit.simd_le(PixelLanes::splat(MOST_MISFIT / (farthest * farthest))).all();
         (is_fit && self.growth.abs() <= MOST_GROWTH).then_some(self)
     }
 
@@ -176,10 +192,20 @@ impl<'a> Frame<'a> {
         [[x - q * self.shear, q], [dq - self.depth, dx - dq * self.shear]]
     }
 
-    /// The pixels' ellipses on the lines.
+    /// How far along the rows and across them pixels' displacements are from what the lines take them for.
+    #[inline]
+    fn residuals(&self, pixels: &PixelFootprints) -> [PixelLanes; 2] {
+        let [[x, q], [along, across]] = self.growths(pixels);
+        let ry = along - q * self.growth - x * self.tilt;
+        [across - x * (self.spread * self.depth) + ry * self.shear, ry]
+    }
+
+    /// The pixels' ellipses on the lines, moved to where the lines see what the pixels see at the mean depth.
     #[inline]
     pub(super) fn kernels(&self, pixels: &PixelFootprints, conics: &Conics) -> Kernels {
         let [[x, q], _] = self.place(pixels);
+        let [rx, ry] = self.residuals(pixels);
+        let (x, q) = (x + rx * self.mean_depth, q + ry * self.mean_depth);
         let scale = q * self.spread + 1.0;
         let xi = (x - q * self.shear) / scale;
         let shear = xi * self.spread + self.shear;

@@ -15,7 +15,7 @@
 //! texture footprint; the weight is exact where the classic algorithm draws lines.)
 //!
 //! Neighbouring pixels see the same texels, so a *patch* of them is swept once (`sweep`): rows across the longer axis of
-//! the displacement, on a transposed copy of the texels where that is u, and eight lines as lanes. What a line sees is
+//! the displacement, on a transposed copy of the texels where that is u, and sixteen lines as lanes. What a line sees is
 //! kept bin by bin, and each pixel weighs the bins by its own Gaussian (`kernel`). Where a patch lies and how its
 //! lines run says `frame`; pixels that no patch can hold well are split into smaller ones, at last into single pixels.
 
@@ -47,7 +47,7 @@ pub const MOST_PIXELS: usize = 256;
 /// [`WIDEST`]; and the fewest. Fewer than texels serve, since a line's colours are interpolated.
 const LINES: [f32; 2] = [0.65, 5.0];
 
-/// Greatest distance between lines in texels: eight lines and their neighbours lie within sixteen texels.
+/// Greatest distance between lines in texels: sixteen lines and their neighbours lie within 32 texels.
 const WIDEST: f32 = 1.99;
 
 /// Most bins of a patch of several pixels.
@@ -121,7 +121,7 @@ struct Extent {
 
 impl Patches<'_> {
     /// The means of the picked pixels (vector times 8 plus lane, ascending), into `found`. With `lights`, one a pick,
-    /// they hold diffuse light. Returns the number of rows swept, eight lines each.
+    /// they hold diffuse light. Returns the number of rows swept, sixteen lines each.
     pub fn means(&self, picks: &[u8], lights: &[LocalLights], scratch: &mut Scratch, found: &mut [Filtered]) -> u64 {
         if picks.is_empty() {
             return 0;

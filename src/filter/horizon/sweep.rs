@@ -1,8 +1,7 @@
 //! The sweep: what is seen along each line of a patch, bin by bin.
 //!
-//! Each line keeps `M`, the farthest place seen so far. A row's texel at place `p` makes the part from `M` to `p` visible,
-//! if there is one; the segment between two rows is linear, so the colour of that part is the one at its middle. Bins cut
-//! the seen places into equal parts. A line that passes the end of a bin writes the bin's mean and goes on with the next.
+//! Bins cut the seen places into equal parts. Sixteen lines at a time read their texels row by row, from the near end to the
+//! far one; what is seen of them, and so the mean of each bin, is found in [`walk`](super::walk).
 
 use super::frame::Frame;
 use super::kernel::Kernel;
