@@ -131,7 +131,7 @@ pub(crate) struct CompareOptions {
     pub(crate) heatmap_max: f32,
     /// Compare each image with that of the same name in DIR; exit with code 1 if one differs. DIR/failed then shows what was
     /// expected, what was given and the difference; with `BASRELIEF_ACCEPT=1` in the environment what is given becomes golden
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["max_pixels", "min_psnr", "heatmap"], help_heading = "Golden images")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["min_psnr", "heatmap"], help_heading = "Golden images")]
     pub(crate) golden: Option<PathBuf>,
     /// A pixel differs if its red, green, blue or opacity is off by more than E of its range, 0 to 1
     #[arg(long, value_name = "E", default_value = "0", value_parser = values::unit, requires = "golden", help_heading = "Golden images")]
