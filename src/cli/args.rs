@@ -1,6 +1,9 @@
 //! The command line as a whole. The options of frames and scenes stand in `settings` and `scene`.
 
-use super::{frames::FramesOptions, scene::SceneOptions, settings::SettingsOptions, values, version};
+use super::{
+    frames::FramesOptions, inspect::InspectOptions, measured::ViewOptions, scene::SceneOptions,
+    settings::SettingsOptions, values, version,
+};
 use basrelief::metrics::Picture;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -33,7 +36,6 @@ Environment:
   JOB_COMPLETION_INDEX       the share in a Kubernetes Indexed Job, with --shards";
 
 #[derive(Subcommand)]
-#[expect(clippy::large_enum_variant, reason = "there is one, on the stack of main")]
 pub(crate) enum Command {
     /// Draw a scene to an image file (what happens without a subcommand)
     Render(RenderOptions),
@@ -44,6 +46,8 @@ pub(crate) enum Command {
     /// taken as linear. With --golden, tests images against those of a folder. Exit code 0; 1 if below --min-psnr or not
     /// golden; 2 if the images cannot be compared.
     Compare(CompareOptions),
+    /// Show what one pixel sees and why: footprint, hidden texels, a cut through the relief, and the formulas' numbers
+    Inspect(InspectOptions),
     /// Put the parts of a picture together that --region drew
     ///
     /// Reads PNG files that `render --region` wrote, which say where they lie, and writes the whole picture as PNG, row by
@@ -78,6 +82,8 @@ pub(crate) struct RenderOptions {
     pub(crate) scene: SceneOptions,
     #[command(flatten)]
     pub(crate) settings: SettingsOptions,
+    #[command(flatten)]
+    pub(crate) view: ViewOptions,
 
     #[command(flatten)]
     pub(crate) frames: FramesOptions,

@@ -6,11 +6,14 @@ mod args;
 mod camera_path;
 mod choices;
 mod compare;
+mod draw;
 mod file_values;
 mod frames;
 mod golden;
+mod inspect;
 mod join;
 mod manual;
+mod measured;
 mod output;
 mod picture;
 mod progress;
@@ -45,6 +48,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Join(options) => join::run(&options),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { output } => manual::man(output.as_deref()),
+        Command::Inspect(options) => inspect::run(options),
     };
     outcome.unwrap_or_else(|refusal| refuse(&refusal))
 }
