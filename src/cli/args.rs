@@ -2,7 +2,7 @@
 
 use super::{
     frames::FramesOptions, inspect::InspectOptions, measured::ViewOptions, scene::SceneOptions,
-    settings::SettingsOptions, values, version,
+    settings::SettingsOptions, study::StudyOptions, values, version,
 };
 use basrelief::metrics::Picture;
 use clap::{Args, Parser, Subcommand};
@@ -48,6 +48,8 @@ pub(crate) enum Command {
     Compare(CompareOptions),
     /// Show what one pixel sees and why: footprint, hidden texels, a cut through the relief, and the formulas' numbers
     Inspect(InspectOptions),
+    /// Compare all filters on a scene with the truth: time, quality, pictures and charts on one page
+    Study(StudyOptions),
     /// Put the parts of a picture together that --region drew
     ///
     /// Reads PNG files that `render --region` wrote, which say where they lie, and writes the whole picture as PNG, row by

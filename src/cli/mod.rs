@@ -23,6 +23,7 @@ mod scene_file;
 mod settings;
 mod shard;
 mod stats;
+mod study;
 mod values;
 mod version;
 
@@ -49,6 +50,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { output } => manual::man(output.as_deref()),
         Command::Inspect(options) => inspect::run(options),
+        Command::Study(options) => study::run(options),
     };
     outcome.unwrap_or_else(|refusal| refuse(&refusal))
 }
