@@ -50,6 +50,10 @@ pub(crate) enum Command {
     Inspect(InspectOptions),
     /// Compare all filters on a scene with the truth: time, quality, pictures and charts on one page
     Study(StudyOptions),
+    /// Look around a scene in a window
+    #[cfg(feature = "viewer")]
+    #[command(after_help = super::view::KEYS)]
+    View(super::view::ViewerOptions),
     /// Put the parts of a picture together that --region drew
     ///
     /// Reads PNG files that `render --region` wrote, which say where they lie, and writes the whole picture as PNG, row by

@@ -26,6 +26,8 @@ mod stats;
 mod study;
 mod values;
 mod version;
+#[cfg(feature = "viewer")]
+mod view;
 
 pub(crate) use args::{Cli, Command};
 use clap::Parser;
@@ -51,6 +53,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Man { output } => manual::man(output.as_deref()),
         Command::Inspect(options) => inspect::run(options),
         Command::Study(options) => study::run(options),
+        #[cfg(feature = "viewer")]
+        Command::View(options) => view::run(options),
     };
     outcome.unwrap_or_else(|refusal| refuse(&refusal))
 }

@@ -7,6 +7,8 @@ mod picture;
 mod texels;
 
 pub(super) use options::InspectOptions;
+#[cfg(feature = "viewer")]
+pub(super) use picture::draw_small;
 use picture::{Layers, draw};
 
 use super::settings::refusal;

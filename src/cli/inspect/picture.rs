@@ -75,6 +75,20 @@ pub(in super::super) fn draw(seen: &Inspection, title: &str, layers: Layers) -> 
     canvas
 }
 
+/// Draws what a pixel sees in less room: the texels, and the main numbers.
+#[cfg(feature = "viewer")]
+pub(in super::super) fn draw_small(seen: &Inspection, [width, height]: [u32; 2]) -> Canvas {
+    let mut canvas = Canvas::new(width, height, WHITE);
+    let lines = number_lines(seen);
+    let room = (CELL[1] * lines.len() as f32) as u32 + 8;
+    let picture = [width, height.saturating_sub(room).max(height / 3)];
+    canvas.picture([0, 0], &texels::draw(seen, picture, Layers::default()));
+    for (i, line) in lines.iter().enumerate() {
+        canvas.text([6.0, picture[1] as f32 + 4.0 + CELL[1] * i as f32], line, Size::Small, INK);
+    }
+    canvas
+}
+
 /// An entry: how it is drawn, and its text.
 enum Key {
     Area(Rgba),
