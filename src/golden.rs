@@ -60,11 +60,19 @@ pub fn check(golden: impl AsRef<Path>, frame: &Frame, thresholds: Thresholds) ->
 /// Checks that an image file, given as its bytes, is the golden image in the file `golden`.
 ///
 /// # Errors
-/// Names the file that cannot be read or written.
+/// Names the file that cannot be read or written, or that it has more than [`Picture::MAX_PIXELS`] pixels.
 pub fn judge(golden: &Path, actual: &[u8], thresholds: Thresholds) -> Result<Verdict> {
+    judge_within(golden, actual, thresholds, Picture::MAX_PIXELS)
+}
+
+/// As [`judge`], with another limit of the number of pixels; one takes 32 bytes while it is read.
+///
+/// # Errors
+/// Names the file that cannot be read or written, or that it has more than `max_pixels` pixels.
+pub fn judge_within(golden: &Path, actual: &[u8], thresholds: Thresholds, max_pixels: u64) -> Result<Verdict> {
     let evidence = Evidence::of(golden)?;
-    let picture = Picture::from_bytes(actual, golden)?;
-    let expected = if golden.exists() { Some(Picture::open(golden)?) } else { None };
+    let picture = Picture::from_bytes_within(actual, golden, max_pixels)?;
+    let expected = if golden.exists() { Some(Picture::open_within(golden, max_pixels)?) } else { None };
     let reason = match &expected {
         Some(expected) => difference(expected, &picture, thresholds),
         None => Some("there is no golden image yet".into()),

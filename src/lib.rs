@@ -87,7 +87,8 @@
 //! | `shade` | filtered colour and normals, and lights, to linear colour |
 //! | `render` | a whole frame: one numbered step a stage |
 //! | [`frame`] | linear pixels, sRGB bytes, image files |
-//! | [`metrics`] | PSNR, SSIM, largest error, heat map |
+//! | [`inspect`] | what one pixel sees, and why: the paper's figures as numbers |
+//! | [`metrics`] | PSNR, SSIM, FLIP, largest error, heat map |
 //! | [`golden`] | pictures that tests must draw again |
 //! | `reference` | the scalar oracle that tests compare with |
 //! | [`invariants`] | what holds of the filters for any input |
@@ -102,6 +103,7 @@
 
 pub mod frame;
 pub mod golden;
+pub mod inspect;
 pub mod invariants;
 pub mod metrics;
 pub mod scene;

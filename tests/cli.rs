@@ -4,7 +4,7 @@
 mod program;
 
 use basrelief::Frame;
-use program::{Folder, json, text};
+use program::{Folder, json, skipped, text};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -277,7 +277,7 @@ fn no_color_is_heeded_on_terminals() {
         command.env_remove("NO_COLOR").envs(no_color.map(|value| ("NO_COLOR", value)));
         command.stdin(std::process::Stdio::null()).output().map(|output| text(&output.stdout))
     };
-    let Ok(styled) = help(None) else { return eprintln!("skipped: no script(1)") };
+    let Ok(styled) = help(None) else { return skipped("there is no script(1) on this machine") };
     assert!(styled.contains("\u{1b}["), "{styled}");
     let plain = help(Some("1")).unwrap();
     assert!(plain.contains("--turntable") && !plain.contains('\u{1b}'), "{plain}");

@@ -197,6 +197,7 @@ fn parts_that_do_not_fit_are_refused() {
         folder.succeeds(&format!("{SMALL} --region {part} -o {name}.png"));
     }
     folder.succeeds(&format!("{SMALL} -o plain.png"));
+    folder.succeeds(&format!("{SMALL} --region 0,8,12,8 -o b.exr"));
     folder.succeeds("quad.obj -q --size 24x17 --region 0,8,24,9 -o other.png");
     folder.succeeds("join a.png b.png c.png -o whole.png");
     for (parts, words) in [
@@ -209,7 +210,8 @@ fn parts_that_do_not_fit_are_refused() {
         ("a.png a.png b.png c.png", ["a.png", "overlaps"]),
         ("a.png other.png", ["24x16", "24x17"]),
         ("plain.png", ["plain.png", "does not say where it lies"]),
-        ("quad.obj", ["quad.obj", ""]),
+        ("quad.obj", ["quad.obj", "PNG"]),
+        ("b.exr c.png", ["b.exr", "not a PNG file"]),
         ("missing.png", ["missing.png", ""]),
     ] {
         folder.refuses(&format!("join {parts} -o new.png"), &words);
@@ -233,15 +235,4 @@ fn picture_in_bands_is_the_picture_of_its_parts() {
     folder.succeeds("join 0.png 1.png -o joined.png");
     let [whole, joined] = ["whole.png", "joined.png"].map(|name| fs::read(folder.path(name)).unwrap());
     assert!(whole == joined);
-}
-
-#[cfg(target_os = "linux")]
-#[test]
-fn threads_are_those_that_the_process_may_use() {
-    let folder = Folder::new();
-    let program = env!("CARGO_BIN_EXE_basrelief");
-    let mut command = std::process::Command::new("taskset");
-    command.args(["-c", "0", program, "quad.obj", "-q", "--size", "8x8", "-o", "a.png", "--json"]);
-    let Ok(output) = command.current_dir(folder.path(".")).output() else { return eprintln!("skipped: no taskset") };
-    assert_eq!(json(&output.stdout)["threads"], 1, "{}", text(&output.stderr));
 }

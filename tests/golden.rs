@@ -94,6 +94,9 @@ fn what_cannot_be_compared_is_refused() {
     folder.refuses("compare text.png --golden golden", &["text.png"]);
     folder.refuses("compare missing.png --golden golden", &["missing.png"]);
     folder.refuses("compare a.png --golden golden --share 2", &["--share"]);
+    folder.put_image("golden/a.png", [0.5, 0.5, 0.5, 1.0]);
+    folder.refuses("compare a.png --golden golden --max-pixels 191", &["a.png", "16 x 12", "--max-pixels"]);
+    folder.succeeds("compare a.png --golden golden --max-pixels 192");
     folder.refuses("compare a.png b.png --tolerance 0.1", &["--golden"]);
     folder.refuses("compare a.png", &["<B>"]);
 }

@@ -35,7 +35,7 @@ static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
     let options = command.get_arguments().filter_map(|option| Some(format!("--{}", option.get_long()?)));
     let words = command.get_arguments().flat_map(|option| option.get_possible_values());
     let words = words.map(|value| value.get_name().to_owned());
-    options.chain(words).chain(["compare", "render", "64x36"].map(str::to_owned)).collect()
+    options.chain(words).chain(["compare", "inspect", "render", "study", "64x36"].map(str::to_owned)).collect()
 });
 
 fn argument(word: Word) -> OsString {

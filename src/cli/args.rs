@@ -1,6 +1,9 @@
 //! The command line as a whole. The options of frames and scenes stand in `settings` and `scene`.
 
-use super::{frames::FramesOptions, scene::SceneOptions, settings::SettingsOptions, values, version};
+use super::{
+    frames::FramesOptions, inspect::InspectOptions, measured::ViewOptions, scene::SceneOptions,
+    settings::SettingsOptions, study::StudyOptions, values, version,
+};
 use basrelief::metrics::Picture;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -33,7 +36,6 @@ Environment:
   JOB_COMPLETION_INDEX       the share in a Kubernetes Indexed Job, with --shards";
 
 #[derive(Subcommand)]
-#[expect(clippy::large_enum_variant, reason = "there is one, on the stack of main")]
 pub(crate) enum Command {
     /// Draw a scene to an image file (what happens without a subcommand)
     Render(RenderOptions),
@@ -44,6 +46,14 @@ pub(crate) enum Command {
     /// taken as linear. With --golden, tests images against those of a folder. Exit code 0; 1 if below --min-psnr or not
     /// golden; 2 if the images cannot be compared.
     Compare(CompareOptions),
+    /// Show what one pixel sees and why: footprint, hidden texels, a cut through the relief, and the formulas' numbers
+    Inspect(InspectOptions),
+    /// Compare all filters on a scene with the truth: time, quality, pictures and charts on one page
+    Study(StudyOptions),
+    /// Look around a scene in a window
+    #[cfg(feature = "viewer")]
+    #[command(after_help = super::view::KEYS)]
+    View(super::view::ViewerOptions),
     /// Put the parts of a picture together that --region drew
     ///
     /// Reads PNG files that `render --region` wrote, which say where they lie, and writes the whole picture as PNG, row by
@@ -78,6 +88,8 @@ pub(crate) struct RenderOptions {
     pub(crate) scene: SceneOptions,
     #[command(flatten)]
     pub(crate) settings: SettingsOptions,
+    #[command(flatten)]
+    pub(crate) view: ViewOptions,
 
     #[command(flatten)]
     pub(crate) frames: FramesOptions,
@@ -131,7 +143,7 @@ pub(crate) struct CompareOptions {
     pub(crate) heatmap_max: f32,
     /// Compare each image with that of the same name in DIR; exit with code 1 if one differs. DIR/failed then shows what was
     /// expected, what was given and the difference; with `BASRELIEF_ACCEPT=1` in the environment what is given becomes golden
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["max_pixels", "min_psnr", "heatmap"], help_heading = "Golden images")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["min_psnr", "heatmap"], help_heading = "Golden images")]
     pub(crate) golden: Option<PathBuf>,
     /// A pixel differs if its red, green, blue or opacity is off by more than E of its range, 0 to 1
     #[arg(long, value_name = "E", default_value = "0", value_parser = values::unit, requires = "golden", help_heading = "Golden images")]

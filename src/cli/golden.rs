@@ -1,9 +1,10 @@
 //! `basrelief compare --golden`: pictures against those of a folder.
 
 use super::args::CompareOptions;
+use super::settings::refusal;
 use super::{Refusal, output};
 use basrelief::frame::Format;
-use basrelief::golden::{Thresholds, Verdict, judge};
+use basrelief::golden::{Thresholds, Verdict, judge_within};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ pub(super) fn run(options: &CompareOptions, folder: &Path) -> Result<ExitCode, R
     let mut all_passed = true;
     for (file, golden) in pairs(options, folder)? {
         let verdict = match std::fs::read(&file) {
-            Ok(bytes) => judge(&golden, &bytes, thresholds).map_err(|e| e.to_string())?,
+            Ok(bytes) => judge_within(&golden, &bytes, thresholds, options.max_pixels).map_err(|e| refusal(&e))?,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound && golden.is_file() => {
                 Verdict::Failed("there is no such image to compare".into())
             }

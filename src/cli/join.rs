@@ -8,7 +8,7 @@ use super::{Refusal, output};
 use basrelief::frame::{Format, Part, PngHead, write_png};
 use basrelief::{Error, Region};
 use std::fs::File;
-use std::io::{BufReader, BufWriter};
+use std::io::{BufRead, BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -117,7 +117,12 @@ fn open(path: &Path) -> Result<Reader, String> {
         return Err("is not a file".into());
     }
     let file = File::open(path).map_err(|e| e.to_string())?;
-    png::Decoder::new(BufReader::new(file)).read_info().map_err(|e| e.to_string())
+    let mut bytes = BufReader::new(file);
+    // Parts may be drawn in any format.
+    if !bytes.fill_buf().map_err(|e| e.to_string())?.starts_with(b"\x89PNG") {
+        return Err("is not a PNG file, and only those say where they lie".into());
+    }
+    png::Decoder::new(bytes).read_info().map_err(|e| e.to_string())
 }
 
 /// The rows of the whole picture.

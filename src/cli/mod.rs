@@ -6,11 +6,14 @@ mod args;
 mod camera_path;
 mod choices;
 mod compare;
+mod draw;
 mod file_values;
 mod frames;
 mod golden;
+mod inspect;
 mod join;
 mod manual;
+mod measured;
 mod output;
 mod picture;
 mod progress;
@@ -20,8 +23,11 @@ mod scene_file;
 mod settings;
 mod shard;
 mod stats;
+mod study;
 mod values;
 mod version;
+#[cfg(feature = "viewer")]
+mod view;
 
 pub(crate) use args::{Cli, Command};
 use clap::Parser;
@@ -45,6 +51,10 @@ pub(crate) fn run() -> ExitCode {
         Command::Join(options) => join::run(&options),
         Command::Completions { shell } => manual::completions(shell),
         Command::Man { output } => manual::man(output.as_deref()),
+        Command::Inspect(options) => inspect::run(options),
+        Command::Study(options) => study::run(options),
+        #[cfg(feature = "viewer")]
+        Command::View(options) => view::run(options),
     };
     outcome.unwrap_or_else(|refusal| refuse(&refusal))
 }

@@ -6,7 +6,7 @@ use super::picture::{self, Took, Way};
 use super::progress::Progress;
 use super::settings::refusal;
 use super::stats::Report;
-use super::{Refusal, output, scene_file};
+use super::{Refusal, measured, output, scene_file};
 use basrelief::{Lighting, Renderer, Settings};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -16,6 +16,9 @@ use std::time::Instant;
 pub(super) fn run(mut options: RenderOptions) -> Result<ExitCode, Refusal> {
     // All that can be refused without work is refused before the work.
     scene_file::read_into(&mut options.scene, &mut options.settings)?;
+    if let Some(view) = options.view.view {
+        return measured::run(&options, view);
+    }
     let settings = options.settings.settings(options.scene.has_lights())?;
     let sequence = options.frames.sequence(options.output.as_deref())?;
     let way = check(&options, &settings, &sequence)?;
@@ -58,13 +61,18 @@ fn check(options: &RenderOptions, settings: &Settings, sequence: &Sequence) -> R
 }
 
 /// A pool of `num` threads, or of as many as this process may use.
-fn thread_pool(num: u32) -> Result<rayon::ThreadPool, Refusal> {
-    let num = match num {
+pub(super) fn thread_pool(num: u32) -> Result<rayon::ThreadPool, Refusal> {
+    let num = num_threads(num);
+    rayon::ThreadPoolBuilder::new().num_threads(num).build().map_err(|e| format!("--threads {num}: {e}"))
+}
+
+/// How many threads `num` stands for.
+pub(super) fn num_threads(num: u32) -> usize {
+    match num {
         // Heeds the affinity mask and the quota of a control group, rounded down.
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         _ => num as usize,
-    };
-    rayon::ThreadPoolBuilder::new().num_threads(num).build().map_err(|e| format!("--threads {num}: {e}"))
+    }
 }
 
 struct Job<'a> {

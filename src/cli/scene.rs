@@ -176,7 +176,14 @@ impl SceneOptions {
         self.all_materials != MapOptions::default() || !self.material.is_empty()
     }
 
-    fn load_options(&self, is_lit: bool) -> LoadOptions {
+    /// The file that is drawn, if one is named.
+    #[cfg(feature = "viewer")]
+    pub(crate) fn path(&self) -> Option<PathBuf> {
+        self.model.clone()
+    }
+
+    /// How that file is read.
+    pub(crate) fn load_options(&self, is_lit: bool) -> LoadOptions {
         let (maps, limits) = (&self.all_materials, &self.limits);
         let default = LoadOptions::default();
         LoadOptions {

@@ -99,6 +99,11 @@ pub(crate) struct FilterOptions {
 }
 
 impl SettingsOptions {
+    /// Whether a size is given.
+    pub(crate) fn has_size(&self) -> bool {
+        self.frame.size.is_some()
+    }
+
     /// The settings; `has_lights` says whether the options name a light.
     pub(crate) fn settings(&self, has_lights: bool) -> Result<Settings, Refusal> {
         let settings = self.unchecked(has_lights);

@@ -31,6 +31,15 @@ pub(crate) fn digits(text: &str) -> Option<u32> {
     text.bytes().all(|b| b.is_ascii_digit()).then(|| text.parse().ok()).flatten()
 }
 
+/// A pixel's column and row from `X,Y`.
+pub(crate) fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(',').map(|(x, y)| [x.trim(), y.trim()].map(digits));
+    match sides {
+        Some([Some(x), Some(y)]) => Ok([x, y]),
+        _ => Err("is not X,Y in whole pixels, such as 320,200".into()),
+    }
+}
+
 /// A finite number within 1e18.
 pub(crate) fn number(text: &str) -> Result<f32, String> {
     check::number(text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?)
@@ -217,6 +226,15 @@ mod tests {
         }
         assert_eq!(region("1, 2,3,4"), Ok(Region { x: 1, y: 2, width: 3, height: 4 }));
         assert!(["", "1,2,3", "1,2,3,4,5", "-1,2,3,4", "1,2,3,+4", "1 2,3,4"].iter().all(|bad| region(bad).is_err()));
+    }
+
+    #[test]
+    fn pixels() {
+        assert_eq!(pixel("3,40"), Ok([3, 40]));
+        assert_eq!(pixel("3, 40"), Ok([3, 40]));
+        for bad in ["", "3", "3,", ",3", "-1,2", "1.5,2", "1,2,3", "99999999999,1"] {
+            assert!(pixel(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

@@ -15,15 +15,33 @@ use rayon::prelude::*;
 /// Says so when the sizes differ or `full_scale` is out of its range.
 pub fn heat_map(a: &Picture, b: &Picture, full_scale: f32) -> Result<Frame> {
     check_sizes(a, b)?;
-    if !(full_scale > 0.0 && full_scale <= 1.0) {
-        return Err(Error::setting("full_scale", format!("{full_scale} is not above 0 and up to 1")));
-    }
+    check_scale(full_scale)?;
     let color = |(&a, &b): (&[f32; 4], &[f32; 4])| {
         let error = (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max);
         if is_compared(a, b) { ramp((error / full_scale).min(1.0)) } else { [0.0; 4] }
     };
     let pixels = a.pixels().par_iter().zip(b.pixels()).map(color).collect();
     Ok(Frame { width: a.width(), height: a.height(), pixels })
+}
+
+/// Errors, row by row, in the colours of [`heat_map`]: black is 0, pale yellow is `full_scale` or more.
+///
+/// # Errors
+/// Says so when there are not `width` times some rows of errors, or `full_scale` is not above 0 and up to 1.
+pub fn errors_as_colors(errors: &[f32], width: u32, full_scale: f32) -> Result<Frame> {
+    check_scale(full_scale)?;
+    if width == 0 || errors.is_empty() || !errors.len().is_multiple_of(width as usize) {
+        return Err(Error::scene("errors", format!("{} are no rows of {width}", errors.len())));
+    }
+    let pixels = errors.iter().map(|error| ramp((error / full_scale).min(1.0))).collect();
+    Ok(Frame { width, height: (errors.len() / width as usize) as u32, pixels })
+}
+
+fn check_scale(full_scale: f32) -> Result<()> {
+    if full_scale > 0.0 && full_scale <= 1.0 {
+        return Ok(());
+    }
+    Err(Error::setting("full_scale", format!("{full_scale} is not above 0 and up to 1")))
 }
 
 /// Opaque linear RGB of the ramp at `t`, 0 to 1.

@@ -1,4 +1,4 @@
-//! How far two pictures are apart: peak signal-to-noise ratio, largest error, structural similarity, heat map.
+//! How far two pictures are apart: peak signal-to-noise ratio, largest error, structural similarity, FLIP, heat map.
 //!
 //! All figures are of sRGB-encoded values from 0 to 1, over red, green and blue, and over the pixels that are opaque in
 //! both pictures ([`compare`]). A [`Frame`](crate::Frame) is encoded without rounding to 8 bits.
@@ -18,11 +18,13 @@
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 
+mod flip;
 mod heat_map;
 mod picture;
 mod ssim;
 
-pub use heat_map::heat_map;
+pub use flip::{Flip, PIXELS_PER_DEGREE, flip};
+pub use heat_map::{errors_as_colors, heat_map};
 pub use picture::Picture;
 
 use crate::error::{Error, Result};

@@ -54,7 +54,11 @@ impl Picture {
     /// # Errors
     /// As [`Picture::open`].
     pub fn from_bytes(bytes: &[u8], name: impl AsRef<Path>) -> Result<Self> {
-        Self::of_image(decode::image_bytes(bytes, name.as_ref(), limits(Self::MAX_PIXELS))?)
+        Self::from_bytes_within(bytes, name.as_ref(), Self::MAX_PIXELS)
+    }
+
+    pub(crate) fn from_bytes_within(bytes: &[u8], name: &Path, max_pixels: u64) -> Result<Self> {
+        Self::of_image(decode::image_bytes(bytes, name, limits(max_pixels))?)
     }
 
     fn of_image(image: DynamicImage) -> Result<Self> {

@@ -136,6 +136,16 @@ impl Patches<'_> {
             + self.means(&picks[middle..], far_lights, scratch, far)
     }
 
+    /// The mip level that a picked pixel (vector times 8 plus lane) is swept on if it is swept by itself.
+    #[must_use]
+    pub fn level(&self, pick: u8, is_lit: bool) -> usize {
+        let vector = usize::from(pick / 8);
+        let mut picked = Vec::new();
+        masks(&[pick], vector, 1, &mut picked);
+        // One footprint is not larger than itself.
+        self.choose_level(&self.pixels[vector..=vector], &picked, 1, is_lit).map_or(0, |(level, _)| level)
+    }
+
     /// Sweeps the picked pixels as one patch; `None` where they do not fit into one.
     fn patch(
         &self,

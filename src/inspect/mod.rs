@@ -1,0 +1,125 @@
+//! What one pixel sees, and why: the numbers behind the paper's figures.
+//!
+//! [`pixel`] gathers for a pixel of a frame: where its view ray meets polygon and relief ([`Ray`]), both ellipses in both
+//! readings of the paper's formulas ([`Reading`]), the sets of texels ([`Sets`]), and a cut through the relief along the
+//! view ([`Cut`]). [`Figure`] places the eye on the built-in scene so that one of the paper's figures is seen.
+//! [`measure`] gives one such number for every pixel of a frame. Plain data: nothing here draws.
+//!
+//! ```
+//! use basrelief::inspect::{self, Figure};
+//!
+//! let figure = Figure::ALL[3];
+//! let seen = inspect::pixel(&figure.scene(), &figure.settings(), figure.pixel())?;
+//! assert!(!seen.sets.hidden.is_empty() && !seen.sets.visible.is_empty());
+//! assert_eq!(seen.sets.hidden.len() + seen.sets.visible.len(), seen.sets.all.len());
+//! # Ok::<(), basrelief::Error>(())
+//! ```
+
+mod cut;
+mod figures;
+mod ground;
+mod measure;
+mod readings;
+mod sets;
+
+pub use cut::{Cut, CutPoint};
+pub use figures::Figure;
+pub use measure::{Measured, View, measure};
+pub use readings::{Conic, Corner, Projected, Reading};
+pub use sets::Sets;
+
+use crate::error::{Error, Result};
+use crate::relief::HeightField;
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::texture::{FULL_F32, Surface};
+use ground::Ground;
+use std::sync::Arc;
+
+/// What one pixel sees.
+#[derive(Clone, Debug)]
+pub struct Inspection {
+    /// Column and row of the pixel; row 0 is the top.
+    pub pixel: [u32; 2],
+    /// Index of the mesh, and of its triangle, at the pixel's centre.
+    pub mesh: usize,
+    /// Index of the triangle within the mesh.
+    pub triangle: usize,
+    /// Index of its material.
+    pub material: usize,
+    /// Relief depth, in texture repeats; 0 where no relief is traced.
+    pub relief_depth: f32,
+    /// The view ray.
+    pub ray: Ray,
+    /// Formulas (1), (2) and (3) as meant and as printed.
+    pub readings: [Reading; 2],
+    /// The paper's sets of texels, of the ellipse that the settings choose.
+    pub sets: Sets,
+    /// The relief along the view ray.
+    pub cut: Cut,
+    surface: Arc<Surface>,
+}
+
+/// The view ray of a pixel in the texture, in repeats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// `(u, v)` where it meets the polygon.
+    pub base: [f32; 2],
+    /// How far it moves along the texture down to the deepest relief.
+    pub displacement: [f32; 2],
+    /// The part of the relief depth at which it first meets relief, 0 to 1.
+    pub hit_depth: f32,
+    /// `(u, v)` there: `base + hit_depth * displacement`.
+    pub hit: [f32; 2],
+}
+
+/// Inspects the surface at the centre of a pixel (column, row) of the frame that the settings describe.
+///
+/// # Errors
+/// Names a scene or setting that is not valid, and a pixel outside the frame or without a textured surface.
+pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Inspection> {
+    scene.validate()?;
+    settings.validate()?;
+    let [x, y] = pixel;
+    let name = || format!("pixel {x},{y}");
+    if x >= settings.width || y >= settings.height {
+        return Err(Error::scene(name(), format!("is outside the frame of {}x{}", settings.width, settings.height)));
+    }
+    let ground = Ground::at(scene, settings, pixel).ok_or_else(|| Error::scene(name(), "sees no surface"))?;
+    let material = &scene.materials[ground.material];
+    let surface =
+        material.surface.clone().ok_or_else(|| Error::scene(name(), "sees a surface without texture coordinates"))?;
+    let is_traced = settings.parallax && surface.relief_depth > 0.0;
+    let field = is_traced.then(|| HeightField::new(&surface));
+    let quad = ground.quad(&surface, field.as_ref());
+    let sets = Sets::new(&surface, &quad, is_traced, settings);
+    let cut = Cut::new(&surface, &quad, sets.level, settings);
+    Ok(Inspection {
+        pixel,
+        mesh: ground.mesh,
+        triangle: ground.triangle,
+        material: ground.material,
+        relief_depth: if is_traced { surface.relief_depth } else { 0.0 },
+        ray: quad.ray,
+        readings: readings::both(&surface, sets.level, &quad, settings),
+        sets,
+        cut,
+        surface,
+    })
+}
+
+impl Inspection {
+    /// Linear red, green and blue, 0 to 1, of a texel of the level of [`Sets`], at a column and row of the endless pattern.
+    #[must_use]
+    pub fn color(&self, [x, y]: [i32; 2]) -> [f32; 3] {
+        let [red_green, blue_height, _] = self.surface.levels[self.sets.level].packed(x, y);
+        let scale = self.surface.color_scale.min(1.0) / FULL_F32;
+        [red_green & 0xffff, red_green >> 16, blue_height & 0xffff].map(|c| c as f32 * scale)
+    }
+
+    /// Height, 0 to 1, of a texel of the level of [`Sets`]; 1 lies on the polygon.
+    #[must_use]
+    pub fn height(&self, [x, y]: [i32; 2]) -> f32 {
+        self.surface.levels[self.sets.level].height_at(x, y)
+    }
+}
