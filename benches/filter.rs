@@ -31,12 +31,13 @@ fn pixel(view: &View, center: [f32; 2]) -> (Footprint, [f32; 2]) {
 }
 
 /// The eight by eight pixels from one on, all with its derivatives and displacement.
-fn block(first: &Footprint, displacement: [f32; 2]) -> [PixelFootprints; 8] {
+fn block(first: &Footprint, displacement: [f32; 2]) -> [PixelFootprints; MOST_PIXELS / 8] {
     let Footprint { center, dx, dy } = *first;
-    std::array::from_fn(|y| {
-        let row = PixelFootprints::splat(first, displacement);
-        let place = |i: usize| f32x8::new(std::array::from_fn(|x| center[i] + dx[i] * x as f32 + dy[i] * y as f32));
-        PixelFootprints { center: [place(0), place(1)], ..row }
+    std::array::from_fn(|i| {
+        let (column, row) = ((i % 2 * 8) as f32, (i / 2) as f32);
+        let at = |c: usize, x: usize| center[c] + dx[c] * (column + x as f32) + dy[c] * row;
+        let place = |c: usize| f32x8::new(std::array::from_fn(|x| at(c, x)));
+        PixelFootprints { center: [place(0), place(1)], ..PixelFootprints::splat(first, displacement) }
     })
 }
 
@@ -69,7 +70,7 @@ fn means(criterion: &mut Criterion) {
             everywhere(b, view, |f, d| parallax::trace(street, f.center, d, parallax::texel_size(street, f, 1)));
         });
         group.bench_function(name("ewa"), |b| {
-            everywhere(b, view, |f, _| filter::ellipse_mean(street, f, None, &settings, &mut set));
+            everywhere(b, view, |f, _| filter::ewa::mean(street, f, &settings));
         });
         for (how, visibility) in [("exact", Visibility::Exact), ("two_ended", Visibility::TwoEnded)] {
             let settings = Settings { visibility, ..settings.clone() };
@@ -82,7 +83,7 @@ fn means(criterion: &mut Criterion) {
         });
         let (mut scratch, mut found) = (Scratch::default(), [Filtered::default(); MOST_PIXELS]);
         let picks: [u8; MOST_PIXELS] = std::array::from_fn(|i| i as u8);
-        group.bench_function(name("horizon_64_pixels"), |b| {
+        group.bench_function(name("horizon_256_pixels"), |b| {
             everywhere(b, view, |f, d| {
                 let (pixels, num_bins) = (&block(f, d), horizon::picture_bins(&settings, false));
                 let patches = Patches { surface: street, far: Some(&far), pixels, settings: &settings, num_bins };

@@ -67,7 +67,8 @@
 //!
 //! [`scene::load`] reads OBJ files, [`scene::builtin`] makes the scene of the README, [`Renderer`] keeps tables and buffers
 //! between frames, [`metrics::compare`] measures two pictures, [`golden::check`] is for tests that
-//! compare with an image in their repository, and [`seen_color`] is the filter alone, on derivatives of your own.
+//! compare with an image in their repository, and [`seen_color`] is the filter alone, on derivatives of your own,
+//! as [`ewa_color`] is the elliptical weighted average of flat textures.
 //!
 //! # The way of a pixel, one direction only
 //!
