@@ -30,7 +30,7 @@ fn pixel(view: &View, center: [f32; 2]) -> (Footprint, [f32; 2]) {
     (Footprint { center, dx: turned(view.across, 0.0), dy: turned(0.0, -view.along) }, turned(0.0, view.walk))
 }
 
-/// The eight by eight pixels from one on, all with its derivatives and displacement.
+/// The sixteen by sixteen pixels from one on, all with its derivatives and displacement.
 fn block(first: &Footprint, displacement: [f32; 2]) -> [PixelFootprints; MOST_PIXELS / 8] {
     let Footprint { center, dx, dy } = *first;
     std::array::from_fn(|i| {
