@@ -206,8 +206,8 @@ impl Patches<'_> {
         Some(num_rows)
     }
 
-    /// The finest level on which the footprints are at most so many texels across as `settings.lines` asks for, and their
-    /// sweeps short enough; and the means of places and displacements. `None` where footprints differ too much.
+    /// The finest level on which the footprints, by the geometric mean of the widest and the narrowest, are at most so many
+    /// texels across as `settings.lines` asks for, and their sweeps short enough; and the means of places and displacements. `None` where footprints differ too much.
     fn choose_level(
         &self,
         pixels: &[PixelFootprints],
@@ -232,7 +232,7 @@ impl Patches<'_> {
         }
         // Under lights no table helps where a level loses what hides behind fine ridges: take one level finer instead.
         let bias = if is_lit { 1 } else { self.far.map_or(0, |far| far.level_bias([du, dv])) };
-        let (across, walk) = (2.0 * most.sqrt(), du.abs().max(dv.abs()));
+        let (across, walk) = (2.0 * (most * least).sqrt().sqrt(), du.abs().max(dv.abs()));
         let widest = (self.settings.lines << bias) as f32;
         let fits = |level: &usize| {
             let texels = surface.texels_per_repeat(*level);
