@@ -88,3 +88,9 @@ fn views_have_a_legend_below_the_frame() {
     folder.refuses("--legend off -o x.png", &["--view"]);
     folder.refuses("--view what -o x.png", &["--view"]);
 }
+
+#[cfg(not(feature = "viewer"))]
+#[test]
+fn a_build_without_the_viewer_says_so() {
+    Folder::new().refuses("view house.obj --split ewa", &["view", "--features viewer"]);
+}

@@ -54,6 +54,14 @@ pub(crate) enum Command {
     #[cfg(feature = "viewer")]
     #[command(after_help = super::view::KEYS)]
     View(super::view::ViewerOptions),
+    /// Look around a scene in a window: not part of this build
+    #[cfg(not(feature = "viewer"))]
+    #[command(hide = true, disable_help_flag = true)]
+    View {
+        /// Whatever follows
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "...")]
+        rest: Vec<std::ffi::OsString>,
+    },
     /// Put the parts of a picture together that --region drew
     ///
     /// Reads PNG files that `render --region` wrote, which say where they lie, and writes the whole picture as PNG, row by

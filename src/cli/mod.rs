@@ -55,6 +55,10 @@ pub(crate) fn run() -> ExitCode {
         Command::Study(options) => study::run(options),
         #[cfg(feature = "viewer")]
         Command::View(options) => view::run(options),
+        #[cfg(not(feature = "viewer"))]
+        Command::View { .. } => Err("view: this program was built without the feature viewer; \
+                                     cargo install --path . --features viewer builds it"
+            .into()),
     };
     outcome.unwrap_or_else(|refusal| refuse(&refusal))
 }
