@@ -283,6 +283,25 @@ fn no_color_is_heeded_on_terminals() {
     assert!(plain.contains("--turntable") && !plain.contains('\u{1b}'), "{plain}");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn progress_tells_the_stages_on_terminals() {
+    let folder = Folder::new();
+    let mut command = Command::new("script");
+    let line = concat!(env!("CARGO_BIN_EXE_basrelief"), " quad.obj --albedo a.png --size 16x16 -o out.png");
+    folder.put_image("a.png", [0.5, 0.25, 0.125, 1.0]);
+    command.args(["-qec", line, "/dev/null"]).env("TERM", "xterm").current_dir(folder.path("."));
+    let Ok(output) = command.stdin(std::process::Stdio::null()).output() else {
+        return skipped("there is no script(1) on this machine");
+    };
+    let seen = text(&output.stdout);
+    let stages =
+        ["reading the model", "decoding images (1 of 1)", "building pyramids (1 of 1)", "building tables", "drawing"];
+    let places: Option<Vec<usize>> = stages.iter().map(|stage| seen.find(stage)).collect();
+    assert!(output.status.success() && places.is_some_and(|places| places.is_sorted()), "{seen:?}");
+    assert!(folder.succeeds("quad.obj --size 16x16 -o out.png").stderr.iter().all(|&c| c != b'\r'));
+}
+
 #[test]
 fn reader_that_has_seen_enough_is_no_error() {
     let folder = Folder::new();

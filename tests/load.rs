@@ -1,12 +1,15 @@
 //! Loading: what is read, how it is read, and what is refused with which words.
 
 use basrelief::Error;
-use basrelief::scene::{HeightSense, LoadOptions, Loaded, MaterialOptions, NormalY, load, load_obj_bytes};
+use basrelief::scene::{
+    HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY, load, load_obj_bytes, load_reporting,
+};
 use basrelief::texture::{Surface, Wrap};
 use glam::{Vec2, Vec3};
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Rgb, Rgb32FImage, RgbImage, Rgba, RgbaImage};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use tempfile::TempDir;
 
 const QUAD: &str = "mtllib s.mtl\no floor\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
@@ -526,4 +529,49 @@ fn links_out_of_the_folder_devices_and_pipes_are_refused() {
         let text = load(&files.path("scene/s.obj"), &options).expect_err("refused").to_string();
         assert!(text.contains("not a regular file"), "{text}");
     }
+}
+
+// ---- many materials
+
+/// Four materials of different sizes, of which some share images.
+fn four_materials() -> Files {
+    let names = ["a", "b", "c", "d"];
+    let faces: String = names.iter().map(|name| format!("usemtl {name}\nf 1/1 2/2 3/3 4/4\n")).collect();
+    let maps = ["map_Kd x.png\ndisp h.png", "map_Kd x.png", "map_Kd y.png\ndisp h.png", "map_Kd -clamp on x.png"];
+    let materials = names.iter().zip(maps).map(|(name, maps)| format!("newmtl {name}\n{maps}\n"));
+    let files =
+        Files::new(&format!("{}{faces}", &QUAD[..QUAD.find("usemtl").expect("in it")]), &materials.collect::<String>());
+    let spotted =
+        |side: u32| RgbImage::from_fn(side, side, |x, y| Rgb([(x * 37) as u8, (y * 59) as u8, (x * y) as u8]));
+    files.image("x.png", spotted(48));
+    files.image("y.png", spotted(21));
+    files.image("h.png", GrayImage::from_fn(64, 32, |x, y| Luma([(x * 31 + y * 17) as u8])));
+    files
+}
+
+#[test]
+fn surfaces_built_in_parallel_are_the_same() {
+    let files = four_materials();
+    let on_threads = |num: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(num).build().expect("threads");
+        let materials = pool.install(|| files.load().scene.materials);
+        assert!(materials.len() == 4 && materials.iter().all(|material| material.surface.is_some()));
+        format!("{materials:?}")
+    };
+    let alone = on_threads(1);
+    assert!((0..4).all(|_| on_threads(4) == alone));
+}
+
+#[test]
+fn stages_are_told_in_order() {
+    let files = four_materials();
+    let stages = Mutex::new(Vec::new());
+    let report = |stage| stages.lock().expect("whole").push(stage);
+    load_reporting(&files.path("s.obj"), &files.options, &report).expect("loads");
+    let images = (0..=3).map(|done| LoadStage::Images { done, num: 3 });
+    let pyramids = (0..=4).map(|done| LoadStage::Pyramids { done, num: 4 });
+    let expected: Vec<_> = [LoadStage::Model].into_iter().chain(images).chain(pyramids).collect();
+    assert_eq!(stages.into_inner().expect("whole"), expected);
+    let words: Vec<_> = [0, 4, 8].iter().map(|&i| expected[i].to_string()).collect();
+    assert_eq!(words, ["reading the model", "decoding images (3 of 3)", "building pyramids (3 of 4)"]);
 }

@@ -4,9 +4,10 @@
 
 use super::choices::{self, ON_OFF, one_of};
 use super::file_values::{self, PointLight, Spelt, Sun};
+use super::progress::Progress;
 use super::settings::refusal;
 use super::{Refusal, values};
-use basrelief::scene::{self, HeightSense, LoadOptions, Loaded, MaterialOptions, NormalY};
+use basrelief::scene::{self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY};
 use basrelief::texture::Wrap;
 use basrelief::{Camera, Light, Scene};
 use clap::Args;
@@ -156,9 +157,10 @@ impl SceneOptions {
     }
 
     /// Reads or makes the scene and sets what the options say.
-    pub(crate) fn load(&self, is_lit: bool) -> Result<Loaded, Refusal> {
+    pub(super) fn load(&self, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
+        let report = |stage: LoadStage| progress.stage(stage.to_string());
         let mut loaded = match &self.model {
-            Some(obj) => scene::load(obj, &self.load_options(is_lit)).map_err(|e| refusal(&e))?,
+            Some(obj) => scene::load_reporting(obj, &self.load_options(is_lit), &report).map_err(|e| refusal(&e))?,
             None if self.has_maps() => return Err("materials are given, but no model (OBJ file) that has them".into()),
             None => built_in(),
         };

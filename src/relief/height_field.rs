@@ -5,9 +5,9 @@
 //! and stores the greatest height in them: a ray above it passes the node without a hit. (Maximum mipmaps: Tevs,
 //! Ihrke, Seidel 2008.)
 
-use crate::texture::{FULL_F32, Surface, Wrap};
+use crate::texture::{FULL_F32, Level, Surface, Wrap};
 
-/// Heights of a surface's base level, 0 to 1 stored as 0 to [`FULL`](crate::texture::FULL), with maxima.
+/// Heights of a surface's base level, read where the surface has them, with maxima.
 #[derive(Clone, Debug)]
 pub struct HeightField {
     /// Texels along u and v before the pattern wraps.
@@ -18,7 +18,7 @@ pub struct HeightField {
     pub inverse_size: [f32; 2],
     /// Whether the pattern ends at its edges instead of repeating.
     pub is_clamped: bool,
-    heights: Vec<u16>,
+    base: Level,
     nodes: Vec<NodeLevel>,
 }
 
@@ -34,16 +34,12 @@ impl HeightField {
     pub fn new(surface: &Surface) -> Self {
         let base = &surface.levels[0];
         let (w, h) = (base.width, base.height);
-        let mut heights = Vec::with_capacity(w * h);
-        for y in 0..h as i32 {
-            heights.extend((0..w as i32).map(|x| (base.packed(x, y)[1] >> 16) as u16));
-        }
         let mut field = Self {
             size: [w as i32, h as i32],
             inverse_size: [1.0 / w as f32, 1.0 / h as f32],
             texels_per_repeat: surface.texels_per_repeat(0),
             is_clamped: surface.wrap == Wrap::Clamp,
-            heights,
+            base: base.clone(),
             nodes: Vec::new(),
         };
         field.nodes = field.build_nodes();
@@ -73,15 +69,13 @@ impl HeightField {
     /// The heights, 0 to [`FULL`](crate::texture::FULL), at the corners of a folded cell: (0,0), (1,0), (0,1), (1,1).
     #[must_use]
     pub fn corners(&self, x: i32, y: i32) -> [f32; 4] {
-        let [w, h] = self.size;
-        let next = |i: i32, n: i32| match i + 1 == n {
-            true if self.is_clamped => i,
+        let above = match y + 1 == self.size[1] {
+            true if self.is_clamped => y,
             true => 0,
-            false => i + 1,
+            false => y + 1,
         };
-        let (right, above, x, y) = (next(x, w), next(y, h), x.max(0), y.max(0));
-        let at = |x: i32, y: i32| f32::from(self.heights[(y * w + x) as usize]);
-        [at(x, y), at(right, y), at(x, above), at(right, above)]
+        let [[a, b], [c, d]] = [y.max(0), above].map(|y| self.base.two_heights(x, y));
+        [a as f32, b as f32, c as f32, d as f32]
     }
 
     /// The greatest height, 0 to [`FULL`](crate::texture::FULL), in the node of level 1 or more that holds a folded cell.

@@ -5,6 +5,7 @@ use crate::relief::HeightField;
 use crate::scene::{Material, Scene};
 use crate::settings::{Filter, Lighting, Settings};
 use crate::texture::Surface;
+use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
 /// Most texels of all surfaces together that far-field tables are built for: some seconds of work. Surfaces beyond, in the
@@ -32,7 +33,7 @@ impl Tables {
     /// Tables that do not depend on the settings.
     pub(super) fn new(scene: &Scene) -> Self {
         Self {
-            fields: per_surface(scene, |surface| Some(HeightField::new(surface))),
+            fields: per_surface(scene, |_| true, |surface| Some(HeightField::new(surface))),
             far_fields: vec![None; scene.materials.len()],
             kernel: truth::Kernel::new(1),
             offsets: Vec::new(),
@@ -57,27 +58,35 @@ impl Tables {
             self.far_field_mib = 0;
         } else if self.far_field_mib != settings.far_field_mib {
             let mut left = MOST_FAR_TEXELS;
-            self.far_fields = per_surface(scene, |surface| {
-                let [width, height] = [surface.levels[0].width, surface.levels[0].height];
-                left = left.checked_sub(width * height)?;
-                FarField::new(surface, settings)
-            });
+            let fits = |surface: &Surface| {
+                let num_texels = surface.levels[0].width * surface.levels[0].height;
+                let fits = num_texels <= left;
+                left -= if fits { num_texels } else { 0 };
+                fits
+            };
+            self.far_fields = per_surface(scene, fits, |surface| FarField::new(surface, settings));
             self.far_field_mib = settings.far_field_mib;
         }
     }
 }
 
-/// What is made of each material's surface, if that has relief: one per distinct surface.
-fn per_surface<T>(scene: &Scene, mut make: impl FnMut(&Surface) -> Option<T>) -> Vec<Option<Arc<T>>> {
-    let mut made: Vec<(Arc<Surface>, Option<Arc<T>>)> = Vec::new();
-    let mut of = |surface: &Arc<Surface>| {
-        if let Some((_, table)) = made.iter().find(|(other, _)| Arc::ptr_eq(other, surface)) {
-            return table.clone();
-        }
-        let table = make(surface).map(Arc::new);
-        made.push((surface.clone(), table.clone()));
-        table
-    };
+/// What is made of each material's surface, if that has relief and `is_wanted`, which is asked in the order of the
+/// materials: one per distinct surface, in parallel.
+fn per_surface<T: Send + Sync>(
+    scene: &Scene,
+    mut is_wanted: impl FnMut(&Surface) -> bool,
+    make: impl Fn(&Surface) -> Option<T> + Sync,
+) -> Vec<Option<Arc<T>>> {
     let relief = |material: &Material| material.surface.clone().filter(|surface| surface.relief_depth > 0.0);
-    scene.materials.iter().map(|material| relief(material).and_then(|surface| of(&surface))).collect()
+    let mut surfaces: Vec<Arc<Surface>> = Vec::new();
+    let mut index_of = |surface: Arc<Surface>| {
+        surfaces.iter().position(|other| Arc::ptr_eq(other, &surface)).unwrap_or_else(|| {
+            surfaces.push(surface);
+            surfaces.len() - 1
+        })
+    };
+    let indices: Vec<_> = scene.materials.iter().map(|material| relief(material).map(&mut index_of)).collect();
+    let wanted: Vec<_> = surfaces.into_iter().map(|surface| is_wanted(&surface).then_some(surface)).collect();
+    let made: Vec<_> = wanted.into_par_iter().map(|surface| make(surface.as_deref()?).map(Arc::new)).collect();
+    indices.into_iter().map(|index| made[index?].clone()).collect()
 }

@@ -7,7 +7,8 @@
 use super::files::{self, Folder};
 use super::mtl::{MtlFiles, MtlMaterial};
 use super::obj::{self, Source};
-use super::plan::Planner;
+use super::plan::{Plan, Planner};
+use super::stage::{LoadStage, Report};
 use super::{Camera, Light, Material, Mesh, Scene, locate, models, surfaces};
 use crate::error::{Error, Result};
 use crate::texture::Wrap;
@@ -138,8 +139,16 @@ pub struct Loaded {
 /// # Errors
 /// Names the file, and the line where one is wrong, or the option or limit that refuses it.
 pub fn load(obj: &Path, options: &LoadOptions) -> Result<Loaded> {
+    load_reporting(obj, options, &|_| ())
+}
+
+/// [`load`] that tells `report`, from any thread, what it is doing.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_reporting(obj: &Path, options: &LoadOptions, report: &(dyn Fn(LoadStage) + Sync)) -> Result<Loaded> {
     files::open(obj)?;
-    load_from(&ObjFile(obj), &Folder::of(obj, options.allow_outside), options)
+    load_from(&ObjFile(obj), &Folder::of(obj, options.allow_outside), options, report)
 }
 
 struct ObjFile<'a>(&'a Path);
@@ -153,12 +162,18 @@ impl Source for ObjFile<'_> {
     }
 }
 
-/// [`load`] from any source of text.
-pub(super) fn load_from(source: &dyn Source, folder: &Folder, options: &LoadOptions) -> Result<Loaded> {
+/// [`load_reporting`] from any source of text.
+pub(super) fn load_from(
+    source: &dyn Source,
+    folder: &Folder,
+    options: &LoadOptions,
+    report: &Report,
+) -> Result<Loaded> {
     let mut depths = options.materials.values().chain([&options.all]).map(|given| given.relief_depth);
     if depths.any(|depth| depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth))) {
         return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
     }
+    report(LoadStage::Model);
     let mtl = RefCell::new(MtlFiles::new(source.path(), folder));
     let models = obj::read(source, options.max_triangles, &mtl)?;
     let MtlFiles { mut materials, mut warnings, .. } = mtl.into_inner();
@@ -174,13 +189,20 @@ pub(super) fn load_from(source: &dyn Source, folder: &Folder, options: &LoadOpti
         materials.push(MtlMaterial { name: "none".into(), ..MtlMaterial::default() });
     }
     check_names(options, &materials)?;
-    let (materials, choices) = finish(&meshes, &materials, folder, options, &mut warnings)?;
-    let mut scene = Scene { meshes, materials, ..Scene::default() };
+    let plans = plans(&meshes, &materials, folder, options)?;
+    warnings.extend(plans.warnings);
+    let surfaces = surfaces::build(&plans.plans.iter().flatten().cloned().collect(), options, report)?;
+    let materials = materials.iter().zip(&plans.plans).map(|(material, plan)| {
+        let surface = plan.as_ref().and_then(|plan| surfaces.get(plan)).cloned();
+        let own = options.materials.get(&material.name).cloned().unwrap_or_default();
+        Material { surface, ..plain_material(material, &own.or(&options.all)) }
+    });
+    let mut scene = Scene { meshes, materials: materials.collect(), ..Scene::default() };
     frame(&mut scene);
     scene.validate()?;
     let mut seen = HashSet::new();
     warnings.retain(|warning| seen.insert(warning.clone()));
-    Ok(Loaded { scene, choices, warnings })
+    Ok(Loaded { scene, choices: plans.choices, warnings })
 }
 
 /// Refuses options for a material that is not there, which would be lost in silence.
@@ -192,14 +214,15 @@ fn check_names(options: &LoadOptions, materials: &[MtlMaterial]) -> Result<()> {
     Err(Error::scene(format!("material {missing}"), reason))
 }
 
-/// Materials with their surfaces, and what was chosen.
-fn finish(
-    meshes: &[Mesh],
-    materials: &[MtlMaterial],
-    folder: &Folder,
-    options: &LoadOptions,
-    warnings: &mut Vec<String>,
-) -> Result<(Vec<Material>, Vec<String>)> {
+/// What the surfaces are made from.
+struct Plans {
+    /// Of each material that has texture coordinates and maps.
+    plans: Vec<Option<Plan>>,
+    choices: Vec<String>,
+    warnings: Vec<String>,
+}
+
+fn plans(meshes: &[Mesh], materials: &[MtlMaterial], folder: &Folder, options: &LoadOptions) -> Result<Plans> {
     let textured: BTreeSet<usize> = meshes.iter().filter(|m| !m.tex_coords.is_empty()).map(|m| m.material).collect();
     let used: Vec<&MtlMaterial> = textured.iter().map(|&i| &materials[i]).collect();
     let mut planner = Planner::new(options, folder, &used)?;
@@ -207,14 +230,8 @@ fn finish(
     for &i in &textured {
         plans[i] = planner.plan(&materials[i])?;
     }
-    warnings.append(&mut planner.warnings);
-    let surfaces = surfaces::build(&plans.iter().flatten().cloned().collect(), options)?;
-    let finished = materials.iter().zip(&plans).map(|(material, plan)| {
-        let surface = plan.as_ref().and_then(|plan| surfaces.get(plan)).cloned();
-        let own = options.materials.get(&material.name).cloned().unwrap_or_default();
-        Material { surface, ..plain_material(material, &own.or(&options.all)) }
-    });
-    Ok((finished.collect(), planner.choices))
+    let Planner { choices, warnings, .. } = planner;
+    Ok(Plans { plans, choices, warnings })
 }
 
 fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {

@@ -15,7 +15,7 @@ use std::path::Path;
 /// As [`load`](super::load()).
 #[doc(hidden)]
 pub fn load_obj_bytes(bytes: &[u8], options: &LoadOptions) -> Result<Loaded> {
-    load_from(&ObjBytes(bytes), &Folder::none(), options)
+    load_from(&ObjBytes(bytes), &Folder::none(), options, &|_| ())
 }
 
 /// Reads an MTL file from memory with all its texture lines, and returns its warnings.

@@ -19,17 +19,19 @@ mod mtl_lines;
 mod obj;
 mod plan;
 mod samples;
+mod stage;
 mod surfaces;
 mod texture_line;
 
 pub use builtin::builtin;
 pub use camera::Camera;
 pub use light::Light;
-pub use load::{HeightSense, LoadOptions, Loaded, MaterialOptions, NormalY, load};
+pub use load::{HeightSense, LoadOptions, Loaded, MaterialOptions, NormalY, load, load_reporting};
 pub use material::Material;
 #[doc(hidden)]
 pub use memory::{load_image_bytes, load_mtl_bytes, load_obj_bytes};
 pub use mesh::Mesh;
+pub use stage::LoadStage;
 
 use crate::error::{Error, Result};
 use glam::Vec3;

@@ -1,12 +1,14 @@
 //! Planned maps to shared surfaces.
 //!
 //! Input: a [`Plan`] for every material. Every image file is decoded once, in parallel, and every different plan becomes
-//! one [`Surface`]. What all of that needs is estimated from the heads of the files before any is decoded.
+//! one [`Surface`], small ones in parallel too. What all of that needs is estimated from the heads of the files before any
+//! is decoded.
 
 use super::decode::{self, ImageInfo, ImageLimits};
 use super::load::LoadOptions;
 use super::plan::{Kind, Map, Plan};
 use super::samples::Samples;
+use super::stage::{Counter, LoadStage, Report};
 use crate::error::{Error, Result};
 use crate::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps};
 use rayon::prelude::*;
@@ -20,6 +22,9 @@ const STORED_BYTES_WITH_NORMALS: u64 = 32;
 /// Bytes of a texel while its surface is built, beyond what is stored in the end: measured at the peak, when all three
 /// maps and the unpacked words of the finest level are alive.
 const BUILD_BYTES: u64 = 8;
+/// Texels of surfaces that are built at once; a larger surface is built alone, by all threads. Counted in texels, not
+/// threads, so that what is refused does not depend on the machine.
+const AT_ONCE: u64 = 1 << 23;
 
 enum MapImage {
     Color(ColorImage),
@@ -40,7 +45,11 @@ pub(super) fn image_limits(options: &LoadOptions) -> ImageLimits {
 ///
 /// # Errors
 /// Names the image that cannot be read or the limit that is exceeded.
-pub(super) fn build(plans: &BTreeSet<Plan>, options: &LoadOptions) -> Result<BTreeMap<Plan, Arc<Surface>>> {
+pub(super) fn build(
+    plans: &BTreeSet<Plan>,
+    options: &LoadOptions,
+    report: &Report,
+) -> Result<BTreeMap<Plan, Arc<Surface>>> {
     let files = kinds_by_file(plans);
     if files.len() > options.max_textures as usize {
         let reason = format!("the scene names {} texture files, more than {}", files.len(), options.max_textures);
@@ -50,19 +59,40 @@ pub(super) fn build(plans: &BTreeSet<Plan>, options: &LoadOptions) -> Result<BTr
     let paths: Vec<&Path> = files.keys().copied().collect();
     let infos: Vec<_> = paths.par_iter().map(|path| decode::probe(path, limits)).collect();
     let infos: Vec<ImageInfo> = infos.into_iter().collect::<Result<_>>()?;
-    check_memory(plans, &paths.iter().copied().zip(infos).collect(), options)?;
-    let decoded: Vec<_> = files.par_iter().map(|(path, kinds)| decode_all(path, kinds, limits)).collect();
+    let infos = paths.iter().copied().zip(infos).collect();
+    check_memory(plans, &infos, options)?;
+    let counter = Counter::new(files.len(), |done, num| LoadStage::Images { done, num }, report);
+    let decode_all =
+        |(path, kinds): (&&Path, &BTreeSet<&Kind>)| decode_all(path, kinds, limits).inspect(|_| counter.add_one());
+    let decoded: Vec<_> = files.par_iter().map(decode_all).collect();
     let mut maps = BTreeMap::new();
     for of_file in decoded {
         maps.extend(of_file?);
     }
+    let counter = Counter::new(plans.len(), |done, num| LoadStage::Pyramids { done, num }, report);
     let mut left: Vec<&Plan> = plans.iter().rev().collect();
     let mut surfaces = BTreeMap::new();
-    while let Some(plan) = left.pop() {
-        // The last plan that uses a map takes it, so that two copies exist as briefly as possible.
-        let is_used_later = |map: &Map| left.iter().any(|plan| plan.maps().any(|other| other == map));
-        let surface = surface(plan, &mut maps, is_used_later, options.keep_normals)?;
-        surfaces.insert(plan.clone(), Arc::new(surface));
+    while !left.is_empty() {
+        let mut batch = Vec::new();
+        let mut num_texels = 0;
+        while let Some(plan) = left.pop_if(|plan| {
+            num_texels += plan_texels(plan, &infos);
+            batch.is_empty() || num_texels <= AT_ONCE
+        }) {
+            // The last plan that uses a map takes it, so that two copies exist as briefly as possible.
+            let is_used_later = |map: &Map| left.iter().any(|plan| plan.maps().any(|other| other == map));
+            batch.push((plan, surface_maps(plan, &mut maps, is_used_later, options.keep_normals)));
+        }
+        let built = batch.into_par_iter().map(|(plan, maps)| {
+            let surface = Surface::new(maps)?;
+            counter.add_one();
+            Ok((plan.clone(), Arc::new(surface)))
+        });
+        // The first refusal in the order of the plans, whichever thread is first.
+        let built: Vec<Result<_>> = built.collect();
+        for surface in built {
+            surfaces.extend([surface?]);
+        }
     }
     Ok(surfaces)
 }
@@ -76,24 +106,34 @@ fn kinds_by_file(plans: &BTreeSet<Plan>) -> BTreeMap<&Path, BTreeSet<&Kind>> {
     files
 }
 
+fn num_texels([width, height]: [u32; 2]) -> u64 {
+    u64::from(width) * u64::from(height)
+}
+
+/// Texels of a plan's finest level as it is stored.
+fn plan_texels(plan: &Plan, infos: &BTreeMap<&Path, ImageInfo>) -> u64 {
+    let sizes = plan.maps().filter_map(|map| infos.get(map.path.as_path())).map(|info| info.size);
+    let size = sizes.fold([1, 1], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+    num_texels(size) * if plan.is_mirrored() { 4 } else { 1 }
+}
+
 /// Refuses a scene whose textures would take too much memory, before any is decoded.
 fn check_memory(plans: &BTreeSet<Plan>, infos: &BTreeMap<&Path, ImageInfo>, options: &LoadOptions) -> Result<()> {
-    let num_texels = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
     let info = |map: &Map| infos.get(map.path.as_path());
     let decoded: u64 = infos.values().map(|info| info.num_bytes).sum();
     let maps: BTreeSet<&Map> = plans.iter().flat_map(Plan::maps).collect();
     let converted: u64 = maps.iter().filter_map(|map| Some(num_texels(info(map)?.size) * map.kind.num_bytes())).sum();
-    let (mut stored, mut largest) = (0, 0);
+    let (mut stored, mut sum, mut largest) = (0, 0, 0);
     for plan in plans {
-        let sizes = plan.maps().filter_map(info).map(|info| info.size);
         let has_normals = options.keep_normals && plan.has_relief();
         let per_texel = if has_normals { STORED_BYTES_WITH_NORMALS } else { STORED_BYTES };
-        let size = sizes.fold([1, 1], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
-        let num = num_texels(size) * if plan.is_mirrored() { 4 } else { 1 };
+        let num = plan_texels(plan, infos);
         stored += num * per_texel;
-        largest = largest.max(num * BUILD_BYTES);
+        sum += num;
+        largest = largest.max(num);
     }
-    let mib = (decoded + converted + stored + largest) >> 20;
+    let built = sum.min(largest.max(AT_ONCE)) * BUILD_BYTES;
+    let mib = (decoded + converted + stored + built) >> 20;
     if mib > u64::from(options.max_image_mib) {
         let reason = format!("the scene's textures need about {mib} MiB, more than {}", options.max_image_mib);
         return Err(Error::setting("max_image_mib", reason));
@@ -118,12 +158,12 @@ fn convert(samples: &Samples, kind: &Kind) -> MapImage {
     }
 }
 
-fn surface(
+fn surface_maps(
     plan: &Plan,
     images: &mut BTreeMap<Map, MapImage>,
     is_used_later: impl Fn(&Map) -> bool,
     keep_normals: bool,
-) -> Result<Surface> {
+) -> SurfaceMaps {
     let (wrap, relief_depth) = (plan.wrap(), plan.relief_depth());
     let mut maps = SurfaceMaps { wrap, relief_depth, keep_normals, ..SurfaceMaps::default() };
     for map in plan.maps() {
@@ -135,7 +175,7 @@ fn surface(
             None => {}
         }
     }
-    Surface::new(maps)
+    maps
 }
 
 impl MapImage {

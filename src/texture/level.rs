@@ -2,10 +2,13 @@
 //!
 //! A texel is two words, `red | green << 16` and `blue | height << 16`, each 0 to [`FULL`] in linear light or height, and,
 //! where normals are kept, a third word (see [`pack_normal`]). A row stores its words plane by plane, with an apron of
-//! [`APRON`] texels on both sides, so that any run of that many neighbouring texels is one contiguous load per plane.
+//! [`APRON`] texels beyond its end and, where the pattern does not repeat, before its beginning, so that any run of that
+//! many neighbouring texels is one contiguous load per plane.
 
 use super::Wrap;
 use crate::simd::u32x8;
+use rayon::prelude::*;
+use std::sync::Arc;
 
 /// What a packed colour's `color_scale`, or a height on the polygon, is stored as. Fifteen of the sixteen bits: then the
 /// difference of two texels is a signed 16-bit number, and lanes interpolate two channels of a texel at once.
@@ -14,7 +17,7 @@ pub const FULL: u32 = 32767;
 /// [`FULL`] as a number.
 pub(crate) const FULL_F32: f32 = FULL as f32;
 
-/// Texels that a row repeats beyond both of its ends: the widest run of lanes that is loaded at once.
+/// Texels that a row repeats beyond its ends: the widest run of lanes that is loaded at once.
 pub(crate) const APRON: usize = 32;
 
 /// One texel as it is packed.
@@ -29,21 +32,58 @@ pub struct Level {
     pub height: usize,
     wrap: Wrap,
     num_planes: usize,
-    words: Vec<u32>,
+    /// Shared, so that height fields read the heights where they are.
+    words: Arc<[u32]>,
 }
+
+/// Rows that are transposed at once: as many as a cache line of the source has words.
+const BLOCK: usize = 16;
 
 impl Level {
     /// A level from its texels, row by row.
-    pub(crate) fn new(width: usize, height: usize, wrap: Wrap, num_planes: usize, texels: &[PackedTexel]) -> Self {
-        let stride = width + 2 * APRON;
-        let mut words = vec![0; stride * num_planes * height];
-        let columns: Vec<usize> = (0..stride).map(|i| wrap_index(wrap, i as i32 - APRON as i32, width)).collect();
-        for (row, texels) in words.chunks_exact_mut(stride * num_planes).zip(texels.chunks_exact(width)) {
-            for (plane, words) in row.chunks_exact_mut(stride).enumerate() {
-                words.iter_mut().zip(&columns).for_each(|(word, &x)| *word = texels[x][plane]);
+    pub(super) fn new(width: usize, height: usize, wrap: Wrap, num_planes: usize, texels: &[PackedTexel]) -> Self {
+        Self::filled([width, height], wrap, num_planes, 1, |y, plane, lines| {
+            let texels = &texels[y * width..][..width];
+            lines[0].iter_mut().zip(texels).for_each(|(word, texel)| *word = texel[plane]);
+        })
+    }
+
+    /// The same texels with rows that run along columns.
+    pub(super) fn transposed(&self) -> Self {
+        Self::filled([self.height, self.width], self.wrap, self.num_planes, BLOCK, |x, plane, columns| {
+            let (first, stride) = (self.lead() + plane * self.stride() + x, self.stride() * self.num_planes);
+            for y in 0..self.height {
+                let words = &self.words[first + y * stride..];
+                columns.iter_mut().zip(words).for_each(|(column, word)| column[y] = *word);
             }
-        }
-        Self { width, height, wrap, num_planes, words }
+        })
+    }
+
+    /// A level whose rows are written by `fill(y, plane, rows)`, up to `at_once` from row y on.
+    fn filled(
+        [width, height]: [usize; 2],
+        wrap: Wrap,
+        num_planes: usize,
+        at_once: usize,
+        fill: impl Fn(usize, usize, &mut [&mut [u32]]) + Sync,
+    ) -> Self {
+        let mut level = Self { width, height, wrap, num_planes, words: Arc::new([]) };
+        let (lead, stride) = (level.lead(), level.stride());
+        let mut words: Arc<[u32]> = std::iter::repeat_n(0, stride * num_planes * height).collect();
+        let rows = Arc::get_mut(&mut words).expect("nobody shares it yet");
+        let apron: Vec<_> = (0..lead).chain(lead + width..stride).collect();
+        let apron = apron.into_iter().map(|i| (i, lead + wrap_index(wrap, i as i32 - lead as i32, width)));
+        let apron: Vec<(usize, usize)> = apron.collect();
+        rows.par_chunks_mut(stride * num_planes * at_once).enumerate().for_each(|(block, rows)| {
+            for plane in 0..num_planes {
+                let of_plane = rows.chunks_exact_mut(stride).skip(plane).step_by(num_planes);
+                let mut lines: Vec<&mut [u32]> = of_plane.map(|row| &mut row[lead..lead + width]).collect();
+                fill(block * at_once, plane, &mut lines);
+            }
+            rows.chunks_exact_mut(stride).for_each(|row| apron.iter().for_each(|&(to, from)| row[to] = row[from]));
+        });
+        level.words = words;
+        level
     }
 
     /// Whether the level holds the texels that its size, which anyone may have changed, promises.
@@ -55,16 +95,16 @@ impl Level {
 
     /// The packed texel at a column and row of the endless pattern.
     pub(crate) fn packed(&self, x: i32, y: i32) -> PackedTexel {
-        let x = wrap_index(self.wrap, x, self.width) + APRON;
+        let x = wrap_index(self.wrap, x, self.width) + self.lead();
         let row = self.row(y);
-        let stride = self.width + 2 * APRON;
+        let stride = self.stride();
         std::array::from_fn(|plane| if plane < self.num_planes { row[plane * stride + x] } else { 0 })
     }
 
     /// The words of a row of the endless pattern, all planes.
     #[inline(always)]
     pub(crate) fn row(&self, y: i32) -> &[u32] {
-        let pitch = (self.width + 2 * APRON) * self.num_planes;
+        let pitch = self.stride() * self.num_planes;
         let start = wrap_index(self.wrap, y, self.height) * pitch;
         &self.words[start..start + pitch]
     }
@@ -74,7 +114,7 @@ impl Level {
     pub(crate) fn run_start(&self, x: i32) -> usize {
         match self.wrap {
             Wrap::Clamp => (x.clamp(-(APRON as i32), self.width as i32) + APRON as i32) as usize,
-            Wrap::Repeat | Wrap::Mirror => wrap_index(self.wrap, x, self.width) + APRON,
+            Wrap::Repeat | Wrap::Mirror => wrap_index(self.wrap, x, self.width),
         }
     }
 
@@ -96,9 +136,14 @@ impl Level {
         &self.words
     }
 
+    /// Texels of the apron before a row: a run never begins there where the pattern repeats.
+    fn lead(&self) -> usize {
+        if self.wrap == Wrap::Clamp { APRON } else { 0 }
+    }
+
     /// Distance in words between the planes of a row.
     pub(crate) fn stride(&self) -> usize {
-        self.width + 2 * APRON
+        self.lead() + self.width + APRON
     }
 
     /// Eight neighbouring words of a row, from `start`: [`Self::run_start`] plus a multiple of [`Self::stride`].
@@ -117,6 +162,14 @@ impl Level {
     #[must_use]
     pub fn height_at(&self, x: i32, y: i32) -> f32 {
         (self.packed(x, y)[1] >> 16) as f32 * (1.0 / FULL_F32)
+    }
+
+    /// The heights, 0 to [`FULL`], at a stored row's column and the one after it; columns of a clamped pattern begin at -1.
+    #[inline(always)]
+    pub(crate) fn two_heights(&self, x: i32, y: i32) -> [u32; 2] {
+        let stride = self.stride();
+        let at = (y as usize * self.num_planes + 1) * stride + (self.lead() as i32 + x) as usize;
+        [self.words[at] >> 16, self.words[at + 1] >> 16]
     }
 
     /// Bytes that the level takes.

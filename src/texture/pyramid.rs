@@ -18,27 +18,17 @@ pub(super) fn build(
     let (mut texels, mut size) = (texels, size);
     loop {
         let [width, height] = size;
-        let (level, level_transposed) = rayon::join(
-            || Level::new(width, height, wrap, num_planes, &texels),
-            || Level::new(height, width, wrap, num_planes, &transpose(&texels, size)),
-        );
+        let level = Level::new(width, height, wrap, num_planes, &texels);
+        let smaller = size.map(|n| (n / 2).max(1));
+        // The finer texels go before the transposed copy comes.
+        texels = if size == [1, 1] { Vec::new() } else { halve(&texels, size, smaller) };
+        transposed.push(level.transposed());
         levels.push(level);
-        transposed.push(level_transposed);
         if size == [1, 1] {
             return (levels, transposed);
         }
-        let smaller = size.map(|n| (n / 2).max(1));
-        texels = halve(&texels, size, smaller);
         size = smaller;
     }
-}
-
-fn transpose(texels: &[PackedTexel], [width, height]: [usize; 2]) -> Vec<PackedTexel> {
-    let mut turned = vec![[0; 3]; texels.len()];
-    turned.par_chunks_exact_mut(height).enumerate().for_each(|(x, column)| {
-        column.iter_mut().enumerate().for_each(|(y, texel)| *texel = texels[y * width + x]);
-    });
-    turned
 }
 
 /// Source places and weights (sum 1) of one destination texel along one axis.
@@ -98,7 +88,7 @@ pub(super) fn normals_from_heights(texels: &mut [PackedTexel], [w, h]: [usize; 2
 }
 
 /// The texture and its mirror images: twice as wide and high, to be repeated. Normals are mirrored too.
-pub(super) fn mirrored(texels: &[PackedTexel], w: usize, h: usize) -> (Vec<PackedTexel>, [usize; 2]) {
+pub(super) fn mirrored(texels: Vec<PackedTexel>, w: usize, h: usize) -> (Vec<PackedTexel>, [usize; 2]) {
     let mut all = Vec::with_capacity(4 * w * h);
     for y in 0..2 * h {
         for x in 0..2 * w {

@@ -81,15 +81,16 @@ impl Surface {
                 texel[1] = texel[1] & 0xffff | stored(h) << 16;
             });
         }
-        if let Some(image) = normal.as_ref().filter(|_| has_normals) {
-            resample::fill(&mut texels, [width, height], wrap, image, |texel, n| {
+        if let Some(image) = normal.filter(|_| has_normals) {
+            resample::fill(&mut texels, [width, height], wrap, &image, |texel, n| {
                 texel[2] = pack_normal(n.map(|c| (c as f32 - 32767.0) / 32767.0));
             });
         } else if has_normals {
             pyramid::normals_from_heights(&mut texels, [width, height], wrap, relief_depth);
         }
+        let is_mirrored = wrap == Wrap::Mirror;
         let (texels, size) =
-            if wrap == Wrap::Mirror { pyramid::mirrored(&texels, width, height) } else { (texels, [width, height]) };
+            if is_mirrored { pyramid::mirrored(texels, width, height) } else { (texels, [width, height]) };
         let num_planes = if has_normals { 3 } else { 2 };
         let (levels, transposed) = pyramid::build(texels, size, wrap, num_planes);
         Ok(Self {
@@ -99,7 +100,7 @@ impl Surface {
             relief_depth: if is_flat { 0.0 } else { relief_depth },
             color_scale,
             has_normals,
-            repeats_stored: if wrap == Wrap::Mirror { 2 } else { 1 },
+            repeats_stored: if is_mirrored { 2 } else { 1 },
         })
     }
 

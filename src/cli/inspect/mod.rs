@@ -11,6 +11,7 @@ pub(super) use options::InspectOptions;
 pub(super) use picture::draw_small;
 use picture::{Layers, draw};
 
+use super::progress::Progress;
 use super::settings::refusal;
 use super::{Refusal, output, scene_file};
 use basrelief::inspect::{self, Figure, Inspection};
@@ -64,8 +65,9 @@ impl Subject {
         if settings.region.is_some() {
             return Err("--region: a pixel is named by its place in the whole picture".into());
         }
-        let loaded = options.scene.load(false)?;
-        loaded.warnings.iter().for_each(|warning| eprintln!("warning: {}", super::one_line(warning)));
+        let progress = Progress::new(false);
+        let loaded = options.scene.load(false, &progress)?;
+        loaded.warnings.iter().for_each(|warning| progress.warn(warning));
         Ok(Self { scene: loaded.scene, settings, pixel, layers: Layers::default(), title: None })
     }
 

@@ -5,6 +5,7 @@ mod colors;
 use super::args::RenderOptions;
 use super::choices::{Choice, ON_OFF, one_of};
 use super::draw::{CELL, Canvas, Pen, Rgba, Size};
+use super::progress::Progress;
 use super::render::thread_pool;
 use super::settings::refusal;
 use super::{Refusal, output};
@@ -50,8 +51,10 @@ pub(super) fn run(options: &RenderOptions, view: View) -> Result<ExitCode, Refus
     }
     let format = output::image_format(sequence.output())?;
     let measured = thread_pool(options.threads)?.install(|| {
-        let loaded = options.scene.load(view == View::Normal)?;
-        loaded.warnings.iter().for_each(|warning| eprintln!("warning: {}", super::one_line(warning)));
+        let progress = Progress::new(options.quiet);
+        let loaded = options.scene.load(view == View::Normal, &progress)?;
+        loaded.warnings.iter().for_each(|warning| progress.warn(warning));
+        progress.stage("measuring");
         measure(&loaded.scene, &settings, view).map_err(|e| refusal(&e))
     })?;
     let frame = draw(&measured, view, options.view.legend).into_frame();
