@@ -14,9 +14,9 @@ static HEAP: PeakAlloc = PeakAlloc;
 /// What does not grow with the scene: buffers of one tile, and of threads.
 const CONSTANT: usize = 4 << 20;
 
-/// Bytes a texel that a surface and its height field take, and that building it takes with its images; the goal is 24 for both.
-const KEPT: f64 = 27.0;
-const BUILT: f64 = 42.0;
+/// Bytes a texel that a surface and its height field take, and that building it takes with its images.
+const KEPT: f64 = 24.0;
+const BUILT: f64 = 24.0;
 
 /// Bytes that `run` has on the heap at its peak, beyond what was there before, and its result.
 fn peak<T>(run: impl FnOnce() -> T) -> (usize, T) {

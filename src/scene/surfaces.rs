@@ -19,8 +19,8 @@ use std::sync::Arc;
 /// Bytes of a texel in all levels, each also transposed: two words, a third for normals, 4/3 for the smaller levels.
 const STORED_BYTES: u64 = 22;
 const STORED_BYTES_WITH_NORMALS: u64 = 32;
-/// Bytes of a texel while its surface is built, beyond what is stored in the end: measured at the peak, when all three
-/// maps and the unpacked words of the finest level are alive.
+/// Bytes of a texel while its surface is built, beyond its maps and what is stored in the end: copies of maps that another
+/// surface uses too.
 const BUILD_BYTES: u64 = 8;
 /// Texels of surfaces that are built at once; a larger surface is built alone, by all threads. Counted in texels, not
 /// threads, so that what is refused does not depend on the machine.
