@@ -82,6 +82,7 @@ pub fn exp_negative(x: f32x8) -> f32x8 {
 #[must_use]
 #[inline(always)]
 pub fn pick_words(words: &[u32], start: usize, numbers: i32x16) -> [u32x16; 2] {
+    debug_assert!((0..=1).contains(&numbers.as_array()[0]) && (0..31).contains(&numbers.as_array()[15]), "{numbers:?}");
     if cfg!(target_feature = "avx512f") {
         let run = |start: usize| {
             let lanes: &[u32; 16] = words[start..start + 16].try_into().expect("a slice of sixteen");

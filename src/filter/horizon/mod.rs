@@ -191,7 +191,7 @@ impl Patches<'_> {
         totals.resize(picks.len(), Totals::default());
         let num_lines = (LINES[0] * self.settings.lines as f32).max(LINES[1]);
         let spacing = (WIDEST / scale).min(extent.half_width * (2.0 / num_lines));
-        let layout = Layout { frame: &frame, extent: &extent, spacing, step };
+        let layout = Layout { frame: &frame, most_scale: scale, extent: &extent, spacing, step };
         let num_rows = if lights.is_empty() {
             layout.run(unlit, kernels, &[], totals)
         } else {
@@ -287,6 +287,7 @@ impl Extent {
 /// How a patch is cut into grids of lines and rows.
 struct Layout<'a> {
     frame: &'a Frame<'a>,
+    most_scale: f32,
     extent: &'a Extent,
     spacing: f32,
     step: f32,
@@ -310,6 +311,7 @@ impl Layout<'_> {
         for line in (0..num_lines).step_by(MOST_LINES) {
             let grid = Grid {
                 frame: self.frame,
+                most_scale: self.most_scale,
                 first: first + line as f32 * spacing,
                 spacing,
                 num_lines: (num_lines - line).min(MOST_LINES),

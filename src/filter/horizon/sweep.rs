@@ -29,6 +29,8 @@ pub(super) type Row = [f32; WIDTH];
 #[derive(Clone, Debug)]
 pub(super) struct Grid<'a> {
     pub(super) frame: &'a Frame<'a>,
+    /// How much farther apart than in the middle lines are at most.
+    pub(super) most_scale: f32,
     /// `xi` of the first line, and how far apart lines are; below 1 texel.
     pub(super) first: f32,
     pub(super) spacing: f32,
@@ -125,6 +127,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
 /// A group of lines of a grid.
 struct Lines<'a> {
     frame: &'a Frame<'a>,
+    most_scale: f32,
     xi: LineLanes,
     /// Rows down to the deepest relief in the middle of each line, and as many bins.
     depth: LineLanes,
@@ -146,6 +149,7 @@ impl<'a> Lines<'a> {
         let (depth_bins, begin) = (depth * scale, grid.begin * scale);
         Self {
             frame,
+            most_scale: grid.most_scale,
             xi,
             depth,
             depth_bins,
@@ -189,7 +193,8 @@ impl<'a> Lines<'a> {
     fn columns(&self, row: i32) -> LineLanes {
         let Frame { origin, shear, spread, .. } = *self.frame;
         let q = row as f32 - self.middle;
-        self.xi * (spread * q + 1.0) + (origin[0] + shear * q)
+        // Rows that are read ahead may lie where lines would run together, or farther apart than a run of texels reaches.
+        self.xi * (spread * q + 1.0).clamp(0.0, self.most_scale) + (origin[0] + shear * q)
     }
 
     /// Where the run of texels around the lines in a row starts among the level's words.
