@@ -150,18 +150,6 @@ pub fn lanes(mask: i32x8) -> f32x8 {
     wide::bytemuck::cast(mask)
 }
 
-/// [`mask`] of sixteen lanes.
-#[must_use]
-pub fn line_mask(comparison: f32x16) -> i32x16 {
-    wide::bytemuck::cast(comparison)
-}
-
-/// [`lanes`] of sixteen numbers.
-#[must_use]
-pub fn line_lanes(mask: i32x16) -> f32x16 {
-    wide::bytemuck::cast(mask)
-}
-
 /// Sixteen lanes of two vectors of eight.
 #[must_use]
 pub fn join(halves: [f32x8; 2]) -> f32x16 {

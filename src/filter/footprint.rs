@@ -24,7 +24,7 @@ use crate::simd::{PixelLanes, permute};
 
 /// Longest derivative that is kept, in texture repeats a pixel: a footprint of that length holds the mean of all texels
 /// as well as a longer one does.
-pub(super) const MAX_LENGTH: f32 = 16.0;
+const MAX_LENGTH: f32 = 16.0;
 
 /// The derivatives of the texture coordinates of eight pixels, in repeats a pixel.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +44,26 @@ pub struct Footprint {
     pub dx: [f32; 2],
     /// `(du/dy, dv/dy)`.
     pub dy: [f32; 2],
+}
+
+/// The places of eight pixels, with 0 for a coordinate that is not within 1e6 repeats.
+#[must_use]
+#[inline]
+pub fn bounded_place(place: [PixelLanes; 2]) -> [PixelLanes; 2] {
+    place.map(|c| c.abs().simd_le(PixelLanes::splat(1e6)).select(c, PixelLanes::ZERO))
+}
+
+/// A derivative of eight pixels, shortened where it is longer than 16 repeats.
+#[inline]
+pub(super) fn shortened([u, v]: [PixelLanes; 2]) -> [PixelLanes; 2] {
+    let longest = u.abs().fast_max(v.abs());
+    let is_long = longest.simd_gt(PixelLanes::splat(MAX_LENGTH));
+    // Few are, so that the division is worth a branch.
+    if !is_long.any() {
+        return [u, v];
+    }
+    let scale = is_long.select(PixelLanes::splat(MAX_LENGTH) / longest, PixelLanes::ONE);
+    [u * scale, v * scale]
 }
 
 /// Formula (2) or (3), as meant or as printed, in each quad of `uv` with the relief's `offset`.

@@ -18,7 +18,7 @@ pub mod visible;
 
 pub use ellipse::{Ellipse, RECONSTRUCTION};
 pub use far_field::FarField;
-pub use footprint::{Corner, Differences, Footprint, at_pixel, differences, differences_for};
+pub use footprint::{Corner, Differences, Footprint, at_pixel, bounded_place, differences, differences_for};
 pub use horizon::PixelFootprints;
 pub use seen::{ewa_color, seen_color};
 pub use texel_set::{TexelRow, TexelSet};

@@ -3,7 +3,7 @@
 //! Neighbouring texels of a row lie next to each other, so a pixel's two by two texels of a level are two short loads a
 //! plane; levels and places may differ from pixel to pixel. Lanes are pixels.
 
-use super::footprint::MAX_LENGTH;
+use super::footprint::shortened;
 use super::{Differences, isotropic};
 use crate::simd::{PixelLanes, high_half, i32x8, low_half, u32x8};
 use crate::texture::Surface;
@@ -36,25 +36,12 @@ pub fn colors(surface: &Surface, place: [PixelLanes; 2], size: PixelLanes) -> [P
 #[inline]
 pub fn longest_side(surface: &Surface, differences: &Differences) -> PixelLanes {
     let texels = surface.texels_per_repeat(0);
-    let squared = |[u, v]: [PixelLanes; 2]| {
-        let longest = u.abs().fast_max(v.abs());
-        let is_long = longest.simd_gt(PixelLanes::splat(MAX_LENGTH));
-        let scale = if is_long.any() {
-            is_long.select(PixelLanes::splat(MAX_LENGTH) / longest, PixelLanes::ONE)
-        } else {
-            PixelLanes::ONE
-        };
-        let (u, v) = (u * scale * texels[0], v * scale * texels[1]);
+    let squared = |derivative: [PixelLanes; 2]| {
+        let [u, v] = shortened(derivative);
+        let (u, v) = (u * texels[0], v * texels[1]);
         u * u + v * v
     };
     squared(differences.dx).fast_max(squared(differences.dy)).sqrt()
-}
-
-/// The places, with 0 in place of what is not within 1e6 repeats.
-#[must_use]
-#[inline]
-pub fn bounded(place: [PixelLanes; 2]) -> [PixelLanes; 2] {
-    place.map(|c| c.abs().simd_le(PixelLanes::splat(1e6)).select(c, PixelLanes::ZERO))
 }
 
 fn bilinear(surface: &Surface, levels: &[usize; 8], place: [PixelLanes; 2]) -> [PixelLanes; 3] {

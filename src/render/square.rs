@@ -4,7 +4,7 @@
 //! before it is looked up in the texture.
 
 use super::quads::{Ground, QuadShader};
-use crate::filter::trilinear;
+use crate::filter::{self, trilinear};
 use crate::raster::QuadBlock;
 use crate::simd::PixelLanes;
 use crate::texture::FULL_F32;
@@ -28,7 +28,7 @@ impl QuadShader<'_> {
         for index in 0..block.num_pairs() {
             let pair = block.pair(index);
             let (place, differences) = self.hits(ground, &pair);
-            let place = trilinear::bounded(place).map(PixelLanes::to_array);
+            let place = filter::bounded_place(place).map(PixelLanes::to_array);
             let size = trilinear::longest_side(ground.surface, &differences).to_array();
             for lane in pair.covered() {
                 let Queue { num, .. } = queue;

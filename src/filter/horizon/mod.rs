@@ -207,7 +207,8 @@ impl Patches<'_> {
     }
 
     /// The finest level on which the footprints, by the geometric mean of the widest and the narrowest, are at most so many
-    /// texels across as `settings.lines` asks for, and their sweeps short enough; and the means of places and displacements. `None` where footprints differ too much.
+    /// texels across as `settings.lines` asks for, and their sweeps short enough; and the means of places and
+    /// displacements. `None` where footprints differ too much.
     fn choose_level(
         &self,
         pixels: &[PixelFootprints],

@@ -1,6 +1,6 @@
 //! What a sweep must know of its pixels, eight in the lanes of a vector.
 
-use crate::filter::footprint::{Differences, Footprint, MAX_LENGTH};
+use crate::filter::footprint::{Differences, Footprint, bounded_place, shortened};
 use crate::simd::PixelLanes;
 
 /// Least half axis in texels: what a magnified pixel covers is that much at least, so that no division overflows.
@@ -31,13 +31,8 @@ impl PixelFootprints {
     /// The pixels around `center` with the given derivatives, which are shortened to 16 repeats.
     #[must_use]
     pub fn new(center: &[PixelLanes; 2], differences: &Differences, displacement: [PixelLanes; 2]) -> Self {
-        let bounded = |[u, v]: [PixelLanes; 2]| {
-            let longest = u.abs().fast_max(v.abs()).fast_max(PixelLanes::splat(MAX_LENGTH));
-            let scale = PixelLanes::splat(MAX_LENGTH) / longest;
-            [u * scale, v * scale]
-        };
-        let center = center.map(|c| c.abs().simd_le(PixelLanes::splat(1e6)).select(c, PixelLanes::ZERO));
-        Self { center, dx: bounded(differences.dx), dy: bounded(differences.dy), displacement }
+        let (dx, dy) = (shortened(differences.dx), shortened(differences.dy));
+        Self { center: bounded_place(*center), dx, dy, displacement }
     }
 
     /// One of the pixels.
