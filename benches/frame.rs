@@ -1,6 +1,6 @@
 //! Whole frames of the built-in scene, small, by each filter, on all processors.
 
-use basrelief::{Derivatives, Filter, Lighting, Renderer, Settings, Visibility, scene};
+use basrelief::{Derivatives, Filter, Frame, Lighting, Renderer, Settings, Visibility, scene};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 const WIDTH: u32 = 320;
@@ -28,7 +28,8 @@ fn frames(criterion: &mut Criterion) {
     ];
     for (name, settings) in cases {
         let mut renderer = Renderer::new(scene::builtin(), settings).expect("the settings are valid");
-        group.bench_function(name, |b| b.iter(|| renderer.render()));
+        let mut frame = Frame::default();
+        group.bench_function(name, |b| b.iter(|| renderer.render_into(&mut frame, &|| 0.0)));
     }
     group.finish();
 }

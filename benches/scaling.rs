@@ -4,7 +4,7 @@
 
 mod scenes;
 
-use basrelief::{Filter, Renderer, Scene, Settings};
+use basrelief::{Filter, Frame, Renderer, Scene, Settings};
 use rayon::ThreadPoolBuilder;
 use scenes::{floor, objects, stones, terrain, textured};
 use std::time::Instant;
@@ -27,9 +27,10 @@ fn settings(filter: Filter) -> Settings {
 fn time(scene: Scene, settings: Settings, num_threads: usize) -> f64 {
     let pool = ThreadPoolBuilder::new().num_threads(num_threads).build().expect("threads");
     let mut renderer = Renderer::new(scene, settings).expect("a valid scene");
+    let mut pixels = Frame::default();
     let frame = || {
         let start = Instant::now();
-        pool.install(|| renderer.render());
+        pool.install(|| renderer.render_into(&mut pixels, &|| 0.0));
         start.elapsed().as_secs_f64() * 1e3
     };
     std::iter::repeat_with(frame).take(num_frames()).fold(f64::INFINITY, f64::min)

@@ -69,18 +69,19 @@ pub(super) fn draw(
 ) -> Result<Took, Refusal> {
     match way {
         Way::Whole(format) => {
-            let (frame, took) = draw_timed(renderer);
+            let mut frame = Frame::default();
+            let took = draw_timed(renderer, &mut frame);
             write(&frame, settings, path, format).map(|()| took)
         }
         Way::Bands => draw_bands(renderer, settings, path, progress),
     }
 }
 
-/// Draws the renderer's frame in memory.
-pub(super) fn draw_timed(renderer: &mut Renderer) -> (Frame, Took) {
+/// Draws the renderer's frame in memory, that of `frame` where it has the size.
+pub(super) fn draw_timed(renderer: &mut Renderer, frame: &mut Frame) -> Took {
     let start = Instant::now();
-    let (frame, stats) = renderer.render_timed(&|| milliseconds(start));
-    (frame, (milliseconds(start), stats))
+    let stats = renderer.render_into(frame, &|| milliseconds(start));
+    (milliseconds(start), stats)
 }
 
 /// Writes a frame that was drawn under `settings`.
@@ -101,12 +102,12 @@ fn draw_bands(renderer: &mut Renderer, settings: &Settings, path: &Path, progres
     let (width, height, part) = (drawn.width, drawn.height, part(settings));
     let head = PngHead { width, height, has_opacity, part };
     let num_rows = band_height(width);
-    let mut took = Took::default();
+    let (mut took, mut frame) = (Took::default(), Frame::default());
     let bands = (0..height).step_by(num_rows as usize).map(|y| {
         progress.stage(format!("drawing row {y} of {height}"));
         let band = Region { y: drawn.y + y, height: num_rows.min(height - y), ..drawn };
         renderer.set_region(Some(band))?;
-        let (frame, (ms, stats)) = draw_timed(renderer);
+        let (ms, stats) = draw_timed(renderer, &mut frame);
         took.0 += ms;
         stats::add(&mut took.1, &stats);
         Ok(frame.to_bytes(has_opacity))

@@ -7,7 +7,7 @@ use super::progress::Progress;
 use super::settings::refusal;
 use super::stats::Report;
 use super::{Refusal, measured, output, scene_file};
-use basrelief::{Lighting, Renderer, Settings};
+use basrelief::{Frame, Lighting, Renderer, Settings};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -156,13 +156,12 @@ impl Job<'_> {
         let (Some(num), Way::Whole(format)) = (self.options.repeat, self.way) else {
             return Ok(vec![picture::draw(renderer, &self.settings, path, self.way, &self.progress)?]);
         };
-        let (mut frame, _) = picture::draw_timed(renderer);
+        let mut frame = Frame::default();
+        picture::draw_timed(renderer, &mut frame);
         let mut all = Vec::new();
         for i in 1..=num {
             self.progress.stage(format!("drawing frame {i} of {num}"));
-            let (drawn, took) = picture::draw_timed(renderer);
-            frame = drawn;
-            all.push(took);
+            all.push(picture::draw_timed(renderer, &mut frame));
         }
         picture::write(&frame, &self.settings, path, format)?;
         Ok(all)

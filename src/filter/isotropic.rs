@@ -16,8 +16,8 @@ pub fn bilinear(surface: &Surface, level: usize, place: [f32; 2]) -> Filtered {
     let [u, v] = in_texels(surface, level, place).map(|c| c - 0.5);
     let ([x, y], [fx, fy]) = ([u, v].map(|c| c.floor() as i32), [u - u.floor(), v - v.floor()]);
     let level = &surface.levels[level];
-    let row = |y: i32| texel(level, x, y).lerp(&texel(level, x + 1, y), fx);
-    row(y).lerp(&row(y + 1), fy)
+    let column = |x: i32| texel(level, x, y).lerp(&texel(level, x, y + 1), fy);
+    column(x).lerp(&column(x + 1), fx)
 }
 
 /// Bilinear on the two levels whose texels are next to `size` base texels in size, blended.

@@ -3,6 +3,7 @@
 //! [`Footprint`] is where a pixel lies in the texture, by formulas (2) or (3); [`Ellipse`] its ellipse, formula (1);
 //! [`TexelSet`] the texels in it and those of them that the eye sees; [`ewa`] their weighted mean.
 
+mod corners;
 mod ellipse;
 pub mod ewa;
 mod far_field;

@@ -17,8 +17,8 @@ use crate::texture::srgb8_from_linear;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// A picture in linear light.
-#[derive(Clone, Debug, PartialEq)]
+/// A picture in linear light; without a pixel by default.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
     /// Pixels a row.
     pub width: u32,

@@ -152,11 +152,9 @@ impl Painter<'_> {
         let rect = self.grid.rect(tile);
         scratch.list.clear();
         self.bins.list(tile, &mut scratch.list);
-        if !self.is_fresh {
-            rows.iter_mut().for_each(|row| row.fill(Pixel::default()));
-        }
         if scratch.list.is_empty() {
-            self.add_background(rows);
+            let background = self.background();
+            rows.iter_mut().for_each(|row| row.fill(background));
             return RasterStats::default();
         }
         let start = (self.clock)();
@@ -164,8 +162,12 @@ impl Painter<'_> {
         let seen = (self.clock)();
         self.find_planes(scratch);
         let found = (self.clock)();
+        let is_full = self.is_full(&rect, &scratch.quads);
+        if !self.is_fresh && !(is_full && scratch.quads.iter().all(|quad| self.is_whole(quad))) {
+            rows.iter_mut().for_each(|row| row.fill(Pixel::default()));
+        }
         let (pixels_shaded, shade_ms) = self.shade_quads(&rect, rows, scratch, shade);
-        if !self.is_full(&rect, &scratch.quads) {
+        if !is_full {
             self.add_background(rows);
         }
         RasterStats {
@@ -243,11 +245,18 @@ impl Painter<'_> {
                 shade(&QuadBlock { material: quads[0].material as usize, tile: rect.min, quads, planes }, colors);
                 shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {
-                    num_shaded += add(rows, pair, share, color);
+                    let is_whole = pair.iter().all(|quad| self.is_whole(quad));
+                    num_shaded += if is_whole { set(rows, pair, color) } else { add(rows, pair, share, color) };
                 }
             }
         }
         (num_shaded, shade_ms)
+    }
+
+    /// Whether the triangle is all that the quad's samples see.
+    #[inline(always)]
+    fn is_whole(&self, quad: &SeenQuad) -> bool {
+        quad.coverage == [self.settings.msaa as u8; 4]
     }
 
     /// Whether every sample of the tile sees a triangle.
@@ -257,9 +266,13 @@ impl Painter<'_> {
         num_seen == width * height * u64::from(self.settings.msaa)
     }
 
-    fn add_background(&self, rows: &mut [&mut [Pixel]]) {
+    fn background(&self) -> Pixel {
         let [r, g, b, a] = self.scene.background;
-        let background = [r * a, g * a, b * a, a];
+        [r * a, g * a, b * a, a]
+    }
+
+    fn add_background(&self, rows: &mut [&mut [Pixel]]) {
+        let background = self.background();
         for pixel in rows.iter_mut().flat_map(|row| row.iter_mut()) {
             // Shares are multiples of 1/8 at least: their sum is exact.
             let left = 1.0 - pixel[3];
@@ -273,7 +286,7 @@ impl Painter<'_> {
 /// Adds the colours of one or two quads to the pixels, `share` for each sample; gives how many pixels took part.
 #[inline]
 fn add(rows: &mut [&mut [Pixel]], pair: &[SeenQuad], share: f32, colors: &[PixelLanes; 3]) -> u64 {
-    let [r, g, b] = colors.map(PixelLanes::to_array);
+    let [r, g, b] = colors.each_ref().map(PixelLanes::as_array);
     let mut num = 0;
     for (i, quad) in pair.iter().enumerate() {
         let [x, y] = quad.origin.map(usize::from);
@@ -285,6 +298,34 @@ fn add(rows: &mut [&mut [Pixel]], pair: &[SeenQuad], share: f32, colors: &[Pixel
             (0..3).for_each(|c| pixel[c] += color[c]);
             pixel[3] += share;
             num += 1;
+        }
+    }
+    num
+}
+
+/// Sets the pixels of one or two quads of which one triangle covers every sample; gives how many pixels that were.
+#[inline]
+fn set(rows: &mut [&mut [Pixel]], pair: &[SeenQuad], colors: &[PixelLanes; 3]) -> u64 {
+    let [r, g, b] = colors.each_ref().map(PixelLanes::as_array);
+    let mut num = 0;
+    for (i, quad) in pair.iter().enumerate() {
+        let [x, y] = quad.origin.map(usize::from);
+        for dy in 0..2 {
+            let lane = 4 * i + 2 * dy;
+            let two = [[r[lane], g[lane], b[lane], 1.0], [r[lane + 1], g[lane + 1], b[lane + 1], 1.0]];
+            match rows.get_mut(y + dy).and_then(|row| row.get_mut(x..)) {
+                Some([first, second, ..]) => {
+                    [*first, *second] = two;
+                    num += 2;
+                }
+                // Of the frame's last column.
+                Some([first]) => {
+                    *first = two[0];
+                    num += 1;
+                }
+                // Below the frame's last row.
+                _ => {}
+            }
         }
     }
     num

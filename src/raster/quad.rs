@@ -101,6 +101,13 @@ impl<'a> QuadPair<'a> {
         covered(u64::from_le_bytes(self.coverage))
     }
 
+    /// Whether all pixels see the triangle.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_whole(&self) -> bool {
+        !self.coverage.contains(&0)
+    }
+
     /// The pixel centres on the screen, in pixels: x, y.
     #[must_use]
     #[inline]

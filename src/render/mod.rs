@@ -123,26 +123,28 @@ impl Renderer {
 
     /// Draws a frame on the threads of the current rayon pool.
     pub fn render(&mut self) -> Frame {
-        self.render_timed(&|| 0.0).0
+        let mut frame = Frame::default();
+        self.render_into(&mut frame, &|| 0.0);
+        frame
     }
 
-    /// Draws a frame and says what it took; `clock` gives milliseconds, since the library reads no clock of its own.
-    pub fn render_timed(&mut self, clock: &(dyn Fn() -> f64 + Sync)) -> (Frame, Stats) {
+    /// Draws over a frame, whose memory is taken again where its size is right, and says what it took; `clock` gives
+    /// milliseconds, since the library reads no clock of its own.
+    pub fn render_into(&mut self, frame: &mut Frame, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
         let Self { scene, settings, tables, geometry, rasterizer } = self;
         let start = clock();
         geometry.project(scene, settings);
         let projected = clock();
         let shader = QuadShader::new(scene, settings, tables);
         let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
-        let mut frame = Frame { width: 0, height: 0, pixels: Vec::new() };
-        let counts = rasterizer.draw(geometry, (scene, settings), &shade, clock, &mut frame);
+        let counts = rasterizer.draw(geometry, (scene, settings), &shade, clock, frame);
         if let Some(region) = settings.region {
             // The tiles cover whole blocks, which begin a few pixels before the region.
             let [x, y] = TileGrid::new(settings).area.min.map(|v| v as u32);
             frame.crop(Region { x: region.x - x, y: region.y - y, ..region });
         }
         let [texels_tested, texels_visible] = shader.num_texels();
-        let stats = Stats {
+        Stats {
             geometry_ms: projected - start,
             raster_ms: (clock() - projected - counts.shade_ms / rayon::current_num_threads() as f64).max(0.0),
             binning_ms: counts.binning_ms,
@@ -155,8 +157,7 @@ impl Renderer {
             triangles_drawn: counts.triangles_drawn,
             texels_tested,
             texels_visible,
-        };
-        (frame, stats)
+        }
     }
 }
 

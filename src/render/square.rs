@@ -1,7 +1,7 @@
 //! Pixels of one block by filters that take the footprint for a square: those that are seen, eight at a time.
 //!
 //! Of the eight pixels of a pair of quads, small triangles cover one or two. What is seen of a block is therefore lined up
-//! before it is looked up in the texture.
+//! before it is looked up in the texture, unless it is all of a pair.
 
 use super::quads::{Ground, QuadShader};
 use crate::filter::{self, trilinear};
@@ -28,8 +28,13 @@ impl QuadShader<'_> {
         for index in 0..block.num_pairs() {
             let pair = block.pair(index);
             let (place, differences) = self.hits(ground, &pair);
-            let place = filter::bounded_place(place).map(PixelLanes::to_array);
-            let size = trilinear::longest_side(ground.surface, &differences).to_array();
+            let place = filter::bounded_place(place);
+            let size = trilinear::longest_side(ground.surface, &differences);
+            if pair.is_whole() {
+                colors[first + index] = look_up(ground, place, size);
+                continue;
+            }
+            let (place, size) = (place.map(PixelLanes::to_array), size.to_array());
             for lane in pair.covered() {
                 let Queue { num, .. } = queue;
                 (queue.place[0][num], queue.place[1][num]) = (place[0][lane], place[1][lane]);
@@ -45,15 +50,24 @@ impl QuadShader<'_> {
     }
 }
 
+/// The colours of eight pixels.
+#[inline]
+fn look_up(ground: &Ground, place: [PixelLanes; 2], size: PixelLanes) -> [PixelLanes; 3] {
+    let Ground { surface, material, .. } = *ground;
+    let scale = surface.color_scale / FULL_F32;
+    let found = trilinear::colors(surface, place, size);
+    std::array::from_fn(|c| found[c] * material.diffuse[c] * scale)
+}
+
 impl Queue {
     /// Looks up the first eight pixels, or what there is, and moves the others up.
     fn look_up(&mut self, ground: &Ground, colors: &mut [[PixelLanes; 3]]) {
-        let Ground { surface, material, .. } = *ground;
-        let lanes = |values: &[f32; 16]| PixelLanes::new(std::array::from_fn(|lane| values[lane]));
+        // What is missing of eight is taken for the first, where the others' texels are.
+        let lanes = |values: &[f32; 16]| {
+            PixelLanes::new(std::array::from_fn(|lane| values[if lane < self.num { lane } else { 0 }]))
+        };
         let place = [lanes(&self.place[0]), lanes(&self.place[1])];
-        let found = trilinear::colors(surface, place, lanes(&self.size));
-        let scale = surface.color_scale / FULL_F32;
-        let found: [[f32; 8]; 3] = std::array::from_fn(|c| (found[c] * material.diffuse[c] * scale).to_array());
+        let found = look_up(ground, place, lanes(&self.size)).map(PixelLanes::to_array);
         for lane in 0..self.num.min(8) {
             let [pair, of_pair] = [self.pixel[lane] / 8, self.pixel[lane] % 8].map(|i| i as usize);
             for (color, found) in colors[pair].iter_mut().zip(&found) {

@@ -134,7 +134,8 @@ impl Surface {
     #[must_use]
     pub fn texels_per_repeat(&self, level: usize) -> [f32; 2] {
         let level = &self.levels[level];
-        [level.width, level.height].map(|n| n as f32 / self.repeats_stored as f32)
+        let share = if self.repeats_stored == 2 { 0.5 } else { 1.0 };
+        [level.width as i32 as f32 * share, level.height as i32 as f32 * share]
     }
 
     /// Bytes that the texels take.
