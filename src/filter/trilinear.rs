@@ -12,26 +12,76 @@ use crate::texture::Surface;
 /// Farthest texel from the pattern's first: numbers up to there, and their neighbours, fit 32 bits.
 const FARTHEST: f32 = (1 << 30) as f32;
 
-/// The mean colours of eight pixels at `place` (repeats, within 1e6) whose footprints are `size` base texels long.
-#[must_use]
-#[inline]
-pub fn colors(surface: &Surface, place: [PixelLanes; 2], size: PixelLanes) -> [PixelLanes; 3] {
+/// Most groups of eight pixels that are looked up at once.
+pub const AT_ONCE: usize = 8;
+
+/// Eight pixels whose mean colours are wanted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Group {
+    /// In repeats, within 1e6.
+    pub place: [PixelLanes; 2],
+    /// Length of the footprints in base texels.
+    pub size: PixelLanes,
+}
+
+/// Eight places in a level's texels.
+#[derive(Clone, Copy, Default)]
+struct Spot {
+    level: usize,
+    /// The texel to the upper left.
+    corner: [i32x8; 2],
+    /// How far a place is from its centre to that of the next one, 0 to 1.
+    part: [PixelLanes; 2],
+}
+
+/// The mean colours of up to [`AT_ONCE`] groups.
+///
+/// Each step is done for all groups before the next: one group's steps wait for each other, those of several do not.
+pub fn colors(surface: &Surface, groups: &[Group], colors: &mut [[PixelLanes; 3]; AT_ONCE]) {
     let last = surface.levels.len() - 1;
-    let (levels, blend) = levels_of_sizes(size, last);
-    let (mut fine, mut coarse) = ([PixelLanes::ZERO; 3], [PixelLanes::ZERO; 3]);
-    // Most neighbours lie between the same two levels.
-    let [first, end] = [i32::min, i32::max]
-        .map(|choose| levels.as_array().iter().copied().fold(levels.as_array()[0], choose) as usize);
-    for index in first..=last.min(end + 1) {
-        let at = |index: usize| lanes(levels.simd_eq(i32x8::splat(index as i32)));
-        let is_fine = at(index);
-        let is_coarse = at(index.wrapping_sub(1)) & blend.simd_gt(PixelLanes::ZERO);
+    let mut spots = [[Spot::default(); 2]; AT_ONCE];
+    let mut blends = [PixelLanes::ZERO; AT_ONCE];
+    for ((group, spots), blend) in groups.iter().zip(&mut spots).zip(&mut blends) {
+        let levels;
+        (levels, *blend) = levels_of_sizes(group.size, last);
+        let level = levels.as_array()[0] as usize;
+        if levels.simd_eq(i32x8::splat(level as i32)).all() {
+            *spots = [level, last.min(level + 1)].map(|level| Spot::new(surface, level, group.place));
+        } else {
+            spots[0].level = usize::MAX;
+        }
+    }
+    for (((group, spots), blend), color) in groups.iter().zip(&spots).zip(blends).zip(colors) {
+        *color = if spots[0].level == usize::MAX {
+            on_several_levels(surface, group)
+        } else {
+            let fine = spots[0].color(surface);
+            let is_blended = blend.simd_gt(PixelLanes::ZERO).any();
+            if is_blended { mixed(&fine, &spots[1].color(surface), blend) } else { fine }
+        };
+    }
+}
+
+/// The mean colours of pixels on different levels.
+#[inline(never)]
+fn on_several_levels(surface: &Surface, group: &Group) -> [PixelLanes; 3] {
+    let (levels, blend) = levels_of_sizes(group.size, surface.levels.len() - 1);
+    let [mut fine, mut coarse] = [[PixelLanes::ZERO; 3]; 2];
+    for index in 0..surface.levels.len() {
+        let at = |index: i32| lanes(levels.simd_eq(i32x8::splat(index)));
+        let is_fine = at(index as i32);
+        let is_coarse = at(index as i32 - 1) & blend.simd_gt(PixelLanes::ZERO);
         if (is_fine | is_coarse).any() {
-            let found = bilinear(surface, index, place);
+            let found = Spot::new(surface, index, group.place).color(surface);
             fine = [0, 1, 2].map(|c| is_fine.select(found[c], fine[c]));
             coarse = [0, 1, 2].map(|c| is_coarse.select(found[c], coarse[c]));
         }
     }
+    mixed(&fine, &coarse, blend)
+}
+
+#[inline(always)]
+fn mixed(fine: &[PixelLanes; 3], coarse: &[PixelLanes; 3], blend: PixelLanes) -> [PixelLanes; 3] {
     [0, 1, 2].map(|c| fine[c] + (coarse[c] - fine[c]) * blend)
 }
 
@@ -59,21 +109,29 @@ pub fn longest_side(surface: &Surface, differences: &Differences) -> PixelLanes 
     squared(differences.dx).fast_max(squared(differences.dy)).sqrt()
 }
 
-/// The four texels of a level around each place, interpolated.
-#[inline]
-fn bilinear(surface: &Surface, index: usize, place: [PixelLanes; 2]) -> [PixelLanes; 3] {
-    let (level, texels) = (&surface.levels[index], surface.texels_per_repeat(index));
-    let at = [place[0] * texels[0] - 0.5, place[1] * texels[1] - 0.5];
-    let floors = at.map(PixelLanes::floor);
-    let [fx, fy] = [at[0] - floors[0], at[1] - floors[1]];
-    let bound = PixelLanes::splat(FARTHEST);
-    let [x, y] = floors.map(|floor| floor.fast_max(-bound).fast_min(bound).fast_trunc_int());
-    let [red_green, blue] = corners(level, x, y);
-    let fy = join([fy, fy]);
-    let mix = |channel: fn(u32x16) -> LineLanes, Corners { above, below }: Corners| {
-        let [above, below] = [channel(above), channel(below)];
-        let [left, right] = split(above + (below - above) * fy);
-        left + (right - left) * fx
-    };
-    [mix(low_halves, red_green), mix(high_halves, red_green), mix(low_halves, blue)]
+impl Spot {
+    #[inline(always)]
+    fn new(surface: &Surface, level: usize, place: [PixelLanes; 2]) -> Self {
+        let texels = surface.texels_per_repeat(level);
+        let at = [place[0] * texels[0] - 0.5, place[1] * texels[1] - 0.5];
+        let floors = [at[0].floor(), at[1].floor()];
+        let bound = PixelLanes::splat(FARTHEST);
+        let corner = |floor: PixelLanes| floor.fast_max(-bound).fast_min(bound).fast_trunc_int();
+        let part = [at[0] - floors[0], at[1] - floors[1]];
+        Self { level, corner: [corner(floors[0]), corner(floors[1])], part }
+    }
+
+    /// Interpolated between the four texels around each place.
+    #[inline(always)]
+    fn color(&self, surface: &Surface) -> [PixelLanes; 3] {
+        let [x, y] = self.corner;
+        let [red_green, blue] = corners(&surface.levels[self.level], x, y);
+        let part = join([self.part[1], self.part[1]]);
+        let mix = |channel: fn(u32x16) -> LineLanes, Corners { above, below }: Corners| {
+            let [above, below] = [channel(above), channel(below)];
+            let [left, right] = split(above + (below - above) * part);
+            left + (right - left) * self.part[0]
+        };
+        [mix(low_halves, red_green), mix(high_halves, red_green), mix(low_halves, blue)]
+    }
 }
