@@ -6,6 +6,7 @@
 //!    `shade` the colour.
 //! 4. `raster` adds the colours up to pixels.
 
+mod ellipses;
 mod patches;
 mod quads;
 mod square;

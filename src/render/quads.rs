@@ -48,6 +48,9 @@ impl<'a> QuadShader<'a> {
             Some(surface) if self.settings.filter == Filter::Trilinear && self.settings.lighting == Lighting::Unlit => {
                 self.trilinear(&Ground { material, surface, field }, block, colors);
             }
+            Some(surface) if self.settings.filter == Filter::Ewa => {
+                self.ellipses(&Ground { material, surface, field }, block, colors);
+            }
             surface => colors.extend(block.pairs().map(|pair| {
                 let colors = match surface {
                     None => each_covered(&pair, |lane| self.plain(&pair, material, lane)),
@@ -97,11 +100,6 @@ impl<'a> QuadShader<'a> {
                 Filter::Bilinear => isotropic::bilinear(surface, 0, footprint.center),
                 Filter::Trilinear => {
                     isotropic::trilinear(surface, footprint.center, isotropic::longest_side(surface, &footprint))
-                }
-                Filter::Ewa => {
-                    let (mean, num_read) = filter::ewa::mean(surface, &footprint, self.settings);
-                    num_texels = num_texels.map(|num| num + num_read);
-                    mean
                 }
                 _ => {
                     let reach = reach.map(|reach| reach.map(|lanes| lanes.as_array()[lane]));
@@ -171,7 +169,7 @@ impl<'a> QuadShader<'a> {
         });
     }
 
-    fn lit(&self, ground: &Ground, pair: &QuadPair, lane: usize, texel: &Filtered) -> Vec3 {
+    pub(super) fn lit(&self, ground: &Ground, pair: &QuadPair, lane: usize, texel: &Filtered) -> Vec3 {
         self.lit_at(ground, pair, lane, pixel_center(pair, lane), texel)
     }
 

@@ -49,7 +49,7 @@ impl PixelFootprints {
 
     /// The ellipses in texels of a level with that many texels a repeat.
     #[inline]
-    pub(super) fn conics(&self, texels: [f32; 2], max_anisotropy: f32) -> Conics {
+    pub(in crate::filter) fn conics(&self, texels: [f32; 2], max_anisotropy: f32) -> Conics {
         let [ux, vx] = [self.dx[0] * texels[0], self.dx[1] * texels[1]];
         let [uy, vy] = [self.dy[0] * texels[0], self.dy[1] * texels[1]];
         let root = ux * vy - uy * vx;
@@ -63,13 +63,13 @@ impl PixelFootprints {
 ///
 /// [`Ellipse::bounded`]: crate::filter::Ellipse::bounded
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Conics {
-    pub(super) a: PixelLanes,
-    pub(super) b: PixelLanes,
-    pub(super) c: PixelLanes,
-    pub(super) f: PixelLanes,
-    pub(super) short: PixelLanes,
-    pub(super) long: PixelLanes,
+pub(in crate::filter) struct Conics {
+    pub(in crate::filter) a: PixelLanes,
+    pub(in crate::filter) b: PixelLanes,
+    pub(in crate::filter) c: PixelLanes,
+    pub(in crate::filter) f: PixelLanes,
+    pub(in crate::filter) short: PixelLanes,
+    pub(in crate::filter) long: PixelLanes,
 }
 
 impl Conics {

@@ -1,0 +1,55 @@
+//! Elliptical weighted average (Heckbert 1989): the mean of a set of texels with the weight `exp(-2 r^2)`, a Gaussian
+//! over the disc of radius one pixel, `r^2 = (A U^2 + B U V + C V^2) / F <= 1`.
+//!
+//! [`Scans`] finds the rows of texels of eight pixels at once, lanes being pixels, and takes one pixel's mean after the
+//! other, lanes being texels.
+
+mod gaussian;
+mod scans;
+mod sums;
+
+pub use scans::Scans;
+
+use super::texel_set::{RowQuadric, lane_columns};
+use super::{Ellipse, Filtered, Footprint, PixelFootprints, TexelSet, isotropic};
+use crate::settings::Settings;
+use crate::simd::{TexelLanes, exp_negative};
+use crate::texture::{Level, Surface};
+use sums::Sums;
+
+/// The mean of all texels of the ellipse, and how many were in the batches that were read: one pass over the rows of the
+/// coarsest level on which the Gaussian is sampled well, or of the base level where `texel_budget` is 0.
+#[must_use]
+pub fn mean(surface: &Surface, footprint: &Footprint, settings: &Settings) -> (Filtered, u64) {
+    Scans::new(surface, &PixelFootprints::splat(footprint, [0.0; 2]), settings).mean(surface, 0)
+}
+
+/// The weighted mean of the texels of `set` in the ellipse around `center` (in texels); `None` for an empty set.
+#[must_use]
+pub fn average(level: &Level, set: &TexelSet, ellipse: &Ellipse, center: [f32; 2]) -> Option<Filtered> {
+    let [x0, y0] = center.map(|c| c - 0.5);
+    let mut sums = Sums::default();
+    for row in &set.rows {
+        let quadric = RowQuadric::new(ellipse, row.y as f32 - y0);
+        let start = level.row_start(row.y);
+        let [first, num] = row.batches;
+        for (i, &bits) in set.bits[first..first + num].iter().enumerate() {
+            if bits != 0 {
+                let x = row.x + 8 * i as i32;
+                let r2 = quadric.at(lane_columns(x) - x0).fast_max(TexelLanes::ZERO).fast_min(TexelLanes::ONE);
+                sums.add(level, start + level.run_start(x), exp_negative(r2 + r2) & lane_mask(bits));
+            }
+        }
+    }
+    sums.mean(level.has_normals())
+}
+
+/// All bits of the lanes whose bit is set.
+fn lane_mask(bits: u8) -> TexelLanes {
+    TexelLanes::new(std::array::from_fn(|lane| f32::from_bits(if bits >> lane & 1 == 1 { u32::MAX } else { 0 })))
+}
+
+/// What stands where an ellipse holds no texel.
+fn between_texels(surface: &Surface, level: usize, center: [f32; 2]) -> Filtered {
+    isotropic::bilinear(surface, level, center)
+}
