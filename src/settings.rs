@@ -113,6 +113,10 @@ pub struct Settings {
     /// What `Ewa` adds to A and C of formula (1) for the base level's texels, in square texels, 0.25 to 1: four times the
     /// variance of what interpolates between them. Default: 2/3, bilinear interpolation; 1 is Heckbert's.
     pub texel_kernel: f32,
+    /// Whether `Ewa` takes every texel of the ellipse, as it does with a `texel_budget` of 0 or the formulas as printed.
+    /// Else those next to its longer axis count, on a level as coarse as the shorter one allows: several times as fast, and
+    /// `cut` and `texel_kernel` do not count. Default: `false`.
+    pub every_texel: bool,
     /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
     pub max_anisotropy: f32,
     /// Longest difference of formula (3) over that of (2) that `Visible` takes for a slope of the relief; a longer one is
@@ -156,6 +160,7 @@ impl Default for Settings {
             texel_budget: 256,
             cut: 1.0,
             texel_kernel: RECONSTRUCTION,
+            every_texel: false,
             max_anisotropy: 64.0,
             max_stretch: 4.0,
             samples: 64,

@@ -41,6 +41,14 @@ pub fn sum(lanes: f32x8) -> f32 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
+/// All bits of the lanes whose bit is set.
+#[must_use]
+#[inline(always)]
+pub fn bits(bits: u8) -> u32x8 {
+    let of_lanes = u32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
+    (u32x8::splat(u32::from(bits)) & of_lanes).simd_eq(of_lanes)
+}
+
 /// The lower sixteen bits of each lane as a number.
 #[must_use]
 pub fn low_half(words: u32x8) -> f32x8 {

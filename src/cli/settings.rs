@@ -77,6 +77,10 @@ pub(crate) struct FilterOptions {
     /// interpolation, 1 Heckbert's [default: 0.6666667]
     #[arg(long, value_name = "S", value_parser = values::number, allow_hyphen_values = true)]
     texel_kernel: Option<f32>,
+    /// Whether --filter ewa takes every texel of an ellipse, and not only those next to its longer axis, which is several
+    /// times as fast; --cut and --texel-kernel are for every texel [default: off]
+    #[arg(long, value_name = "on|off", hide_possible_values = true, value_parser = one_of(ON_OFF))]
+    every_texel: Option<bool>,
     /// Longest ellipse, as the ratio of its axes, 1 to 1e6; longer ones are widened [default: 64]
     #[arg(long, value_name = "N", value_parser = values::number, allow_hyphen_values = true)]
     max_anisotropy: Option<f32>,
@@ -128,6 +132,7 @@ impl SettingsOptions {
             texel_budget: filter.texel_budget.unwrap_or(default.texel_budget),
             cut: filter.cut.unwrap_or(default.cut),
             texel_kernel: filter.texel_kernel.unwrap_or(default.texel_kernel),
+            every_texel: filter.every_texel.unwrap_or(default.every_texel),
             max_anisotropy: filter.max_anisotropy.unwrap_or(default.max_anisotropy),
             max_stretch: filter.max_stretch.unwrap_or(default.max_stretch),
             samples: filter.samples.unwrap_or(default.samples),
@@ -164,6 +169,7 @@ impl From<&Settings> for SettingsOptions {
             texel_budget: Some(settings.texel_budget),
             cut: Some(settings.cut),
             texel_kernel: Some(settings.texel_kernel),
+            every_texel: Some(settings.every_texel),
             max_anisotropy: Some(settings.max_anisotropy),
             max_stretch: Some(settings.max_stretch),
             samples: Some(settings.samples),
@@ -260,7 +266,7 @@ mod tests {
     fn each_option_sets_its_field() {
         let line = "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --lighting lit --filter horizon \
                     --visible two-ended --parallax off --derivatives flat --formulas printed --texel-budget 0 \
-                    --cut 1.25 --texel-kernel 0.5 --max-anisotropy 8 --max-stretch 3 \
+                    --cut 1.25 --texel-kernel 0.5 --every-texel on --max-anisotropy 8 --max-stretch 3 \
                     --samples 5 --lines 6 --far-field off --far-field-mib 7";
         let expected = Settings {
             width: 64,
@@ -274,6 +280,7 @@ mod tests {
             texel_budget: 0,
             cut: 1.25,
             texel_kernel: 0.5,
+            every_texel: true,
             max_anisotropy: 8.0,
             max_stretch: 3.0,
             samples: 5,

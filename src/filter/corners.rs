@@ -1,7 +1,7 @@
 //! The two by two texels of a level around each of eight places.
 //!
-//! Neighbouring pixels look at neighbouring texels. So the rows that eight places need are read once, sixteen words of each,
-//! and every place picks its own by a shuffle; places that lie too far apart for that are read one by one, to the same bits.
+//! Neighbouring pixels look at neighbouring texels. So rows are read once for all places near one of them, sixteen words of
+//! each, and every place picks its own by a shuffle; then those near the next place that is left, to the same bits.
 
 use crate::simd::{self, i32x8, join_words, u32x8, u32x16};
 use crate::texture::Level;
@@ -13,42 +13,78 @@ pub(super) struct Corners {
     pub(super) below: u32x16,
 }
 
-/// How far left of the first place's texel the words begin that all places pick from, and how many rows above it.
+/// How far left of a place's texel the words begin that its neighbours pick from, and how many rows above it.
 const BEFORE: i32 = 7;
 const ABOVE: i32 = 8;
 
 /// The first two planes' texels at columns `x` and `x + 1`, rows `y` and `y + 1` of the endless pattern, within 2^30.
 #[inline(always)]
 pub(super) fn corners(level: &Level, x: i32x8, y: i32x8) -> [Corners; 2] {
+    if !simd::HAS_SHUFFLE {
+        return one_by_one(level, x, y);
+    }
     let first = [x.as_array()[0] - BEFORE, y.as_array()[0] - ABOVE];
     let (columns, rows) = (x - i32x8::splat(first[0]), y - i32x8::splat(first[1]));
-    // A place whose column and the next are not among 16 words, or whose rows are not among 32 bits, has a sign somewhere.
-    let beyond = columns | (i32x8::splat(14) - columns) | rows | (i32x8::splat(30) - rows);
-    if simd::HAS_SHUFFLE && !beyond.simd_lt(i32x8::ZERO).any() {
+    if (beyond(columns, 14) | beyond(rows, 30)).to_bitmask() == 0 {
         picked(level, first, simd::as_unsigned(columns), simd::as_unsigned(rows))
     } else {
-        one_by_one(level, x, y)
+        row_by_row(level, x, y)
     }
 }
 
+/// A sign for every place that is not within 0 to `most`.
 #[inline(always)]
-fn picked(level: &Level, [x, y]: [i32; 2], columns: u32x8, rows: u32x8) -> [Corners; 2] {
+fn beyond(places: i32x8, most: i32) -> i32x8 {
+    places | (i32x8::splat(most) - places)
+}
+
+/// All places pick from the same columns: those 0 to 15, and rows 0 to 31, from the first word on.
+#[inline(always)]
+fn picked(level: &Level, first: [i32; 2], columns: u32x8, rows: u32x8) -> [Corners; 2] {
     let numbers = join_words([columns, columns + 1]);
     let mut needed = (u32x8::splat(3) << rows).to_array().into_iter().fold(0, |all, bits| all | bits);
     let rows = join_words([rows, rows]);
-    let (start, stride) = (level.run_start(x), level.stride());
+    let (start, stride) = (level.run_start(first[0]), level.stride());
     let mut corners = [Corners { above: u32x16::ZERO, below: u32x16::ZERO }; 2];
     while needed != 0 {
         let row = needed.trailing_zeros();
         needed &= needed - 1;
         let is_above = rows.simd_eq(u32x16::splat(row));
         let is_below = rows.simd_eq(u32x16::splat(row.wrapping_sub(1)));
-        let start = level.row_start(y + row as i32) + start;
+        let start = level.row_start(first[1] + row as i32) + start;
         for (plane, corners) in corners.iter_mut().enumerate() {
             let words = simd::pick(level.words(), start + plane * stride, numbers);
             corners.above = is_above.bitselect(words, corners.above);
             corners.below = is_below.bitselect(words, corners.below);
         }
+    }
+    corners
+}
+
+/// Places of a row pick from columns of their own, such as those of pixels that lie along a slanted footprint.
+#[inline(never)]
+fn row_by_row(level: &Level, x: i32x8, y: i32x8) -> [Corners; 2] {
+    let stride = level.stride();
+    let mut corners = [Corners { above: u32x16::ZERO, below: u32x16::ZERO }; 2];
+    // Bits of the places whose row, and whose next row, has not been read.
+    let mut left = [u8::MAX; 2];
+    while left != [0; 2] {
+        let place = (left[0] | left[1]).trailing_zeros() as usize;
+        let row = y.as_array()[place] + i32::from(left[0] >> place & 1 == 0);
+        let first = x.as_array()[place] - BEFORE;
+        let columns = x - i32x8::splat(first);
+        let is_near = !(beyond(columns, 14).to_bitmask() as u8);
+        let of_row = [row, row - 1].map(|row| y.simd_eq(i32x8::splat(row)).to_bitmask() as u8 & is_near);
+        let columns = simd::as_unsigned(columns) & u32x8::splat(15);
+        let numbers = join_words([columns, columns + 1]);
+        let [is_above, is_below] = of_row.map(|places| join_words([simd::bits(places); 2]));
+        let start = level.start_at(first, row);
+        for (plane, corners) in corners.iter_mut().enumerate() {
+            let words = simd::pick(level.words(), start + plane * stride, numbers);
+            corners.above = is_above.bitselect(words, corners.above);
+            corners.below = is_below.bitselect(words, corners.below);
+        }
+        left = [left[0] & !of_row[0], left[1] & !of_row[1]];
     }
     corners
 }

@@ -12,18 +12,6 @@ use crate::texture::Surface;
 /// Farthest texel from the pattern's first: numbers up to there, and their neighbours, fit 32 bits.
 const FARTHEST: f32 = (1 << 30) as f32;
 
-/// Most groups of eight pixels that are looked up at once.
-pub const AT_ONCE: usize = 8;
-
-/// Eight pixels whose mean colours are wanted.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Group {
-    /// In repeats, within 1e6.
-    pub place: [PixelLanes; 2],
-    /// Length of the footprints in base texels.
-    pub size: PixelLanes,
-}
-
 /// Eight places in a level's texels.
 #[derive(Clone, Copy, Default)]
 struct Spot {
@@ -34,19 +22,20 @@ struct Spot {
     part: [PixelLanes; 2],
 }
 
-/// The mean colours of up to [`AT_ONCE`] groups.
+/// The mean colours of groups of eight pixels: their places (u and v in repeats, within 1e6) and the lengths of their
+/// footprints in base texels.
 ///
 /// Each step is done for all groups before the next: one group's steps wait for each other, those of several do not.
-pub fn colors(surface: &Surface, groups: &[Group], colors: &mut [[PixelLanes; 3]; AT_ONCE]) {
+pub fn colors<const N: usize>(surface: &Surface, groups: &[[PixelLanes; 3]], colors: &mut [[PixelLanes; 3]; N]) {
     let last = surface.levels.len() - 1;
-    let mut spots = [[Spot::default(); 2]; AT_ONCE];
-    let mut blends = [PixelLanes::ZERO; AT_ONCE];
-    for ((group, spots), blend) in groups.iter().zip(&mut spots).zip(&mut blends) {
+    let mut spots = [[Spot::default(); 2]; N];
+    let mut blends = [PixelLanes::ZERO; N];
+    for ((&[u, v, size], spots), blend) in groups.iter().zip(&mut spots).zip(&mut blends) {
         let levels;
-        (levels, *blend) = levels_of_sizes(group.size, last);
+        (levels, *blend) = levels_of_sizes(size, last);
         let level = levels.as_array()[0] as usize;
         if levels.simd_eq(i32x8::splat(level as i32)).all() {
-            *spots = [level, last.min(level + 1)].map(|level| Spot::new(surface, level, group.place));
+            *spots = [level, last.min(level + 1)].map(|level| Spot::new(surface, level, [u, v]));
         } else {
             spots[0].level = usize::MAX;
         }
@@ -64,15 +53,15 @@ pub fn colors(surface: &Surface, groups: &[Group], colors: &mut [[PixelLanes; 3]
 
 /// The mean colours of pixels on different levels.
 #[inline(never)]
-fn on_several_levels(surface: &Surface, group: &Group) -> [PixelLanes; 3] {
-    let (levels, blend) = levels_of_sizes(group.size, surface.levels.len() - 1);
+fn on_several_levels(surface: &Surface, &[u, v, size]: &[PixelLanes; 3]) -> [PixelLanes; 3] {
+    let (levels, blend) = levels_of_sizes(size, surface.levels.len() - 1);
     let [mut fine, mut coarse] = [[PixelLanes::ZERO; 3]; 2];
     for index in 0..surface.levels.len() {
         let at = |index: i32| lanes(levels.simd_eq(i32x8::splat(index)));
         let is_fine = at(index as i32);
         let is_coarse = at(index as i32 - 1) & blend.simd_gt(PixelLanes::ZERO);
         if (is_fine | is_coarse).any() {
-            let found = Spot::new(surface, index, group.place).color(surface);
+            let found = Spot::new(surface, index, [u, v]).color(surface);
             fine = [0, 1, 2].map(|c| is_fine.select(found[c], fine[c]));
             coarse = [0, 1, 2].map(|c| is_coarse.select(found[c], coarse[c]));
         }

@@ -6,10 +6,10 @@
 //!    `shade` the colour.
 //! 4. `raster` adds the colours up to pixels.
 
-mod ellipses;
+mod flat;
 mod patches;
 mod quads;
-mod square;
+mod queue;
 mod tables;
 
 use crate::error::Result;

@@ -49,7 +49,7 @@ impl<'a> QuadShader<'a> {
                 self.trilinear(&Ground { material, surface, field }, block, colors);
             }
             Some(surface) if self.settings.filter == Filter::Ewa => {
-                self.ellipses(&Ground { material, surface, field }, block, colors);
+                self.ewa(&Ground { material, surface, field }, block, colors);
             }
             surface => colors.extend(block.pairs().map(|pair| {
                 let colors = match surface {

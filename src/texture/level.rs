@@ -6,7 +6,7 @@
 //! many neighbouring texels is one contiguous load per plane.
 
 use super::Wrap;
-use crate::simd::u32x8;
+use crate::simd::{u32x8, u32x16};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -151,6 +151,13 @@ impl Level {
     pub(crate) fn run(row: &[u32], start: usize) -> u32x8 {
         let lanes: &[u32; 8] = row[start..start + 8].try_into().expect("a slice of eight");
         u32x8::new(*lanes)
+    }
+
+    /// [`Self::run`] of sixteen.
+    #[inline(always)]
+    pub(crate) fn long_run(words: &[u32], start: usize) -> u32x16 {
+        let lanes: &[u32; 16] = words[start..start + 16].try_into().expect("a slice of sixteen");
+        u32x16::new(*lanes)
     }
 
     /// Whether texels have a third word, their normal.

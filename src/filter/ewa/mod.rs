@@ -2,26 +2,39 @@
 //! over the disc of radius one pixel, `r^2 = (A U^2 + B U V + C V^2) / F <= 1`.
 //!
 //! [`Scans`] finds the rows of texels of eight pixels at once, lanes being pixels, and takes one pixel's mean after the
-//! other, lanes being texels.
+//! other, lanes being texels. [`Lines`] takes the texels
+//! along the longer axis only.
 
 mod gaussian;
+mod lines;
 mod scans;
 mod sums;
 
+pub use lines::Lines;
 pub use scans::Scans;
 
 use super::texel_set::{RowQuadric, lane_columns};
 use super::{Ellipse, Filtered, Footprint, PixelFootprints, TexelSet, isotropic};
 use crate::settings::Settings;
-use crate::simd::{TexelLanes, exp_negative};
+use crate::simd::{PixelLanes, TexelLanes, exp_negative, i32x8, mask};
 use crate::texture::{Level, Surface};
 use sums::Sums;
+
+/// Eight ellipses whose means can be taken one by one.
+pub trait EllipseMeans: Sized {
+    /// For pixels in repeats.
+    fn new(surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> Self;
+
+    /// The mean of a pixel, with the normal if the surface has one and it is asked for, and how many texels were read.
+    fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64);
+}
 
 /// The mean of all texels of the ellipse, and how many were in the batches that were read: one pass over the rows of the
 /// coarsest level on which the Gaussian is sampled well, or of the base level where `texel_budget` is 0.
 #[must_use]
 pub fn mean(surface: &Surface, footprint: &Footprint, settings: &Settings) -> (Filtered, u64) {
-    Scans::new(surface, &PixelFootprints::splat(footprint, [0.0; 2]), settings).mean(surface, 0)
+    let scans = Scans::new(surface, &PixelFootprints::splat(footprint, [0.0; 2]), settings);
+    if surface.has_normals { scans.mean::<true>(surface, 0) } else { scans.mean::<false>(surface, 0) }
 }
 
 /// The weighted mean of the texels of `set` in the ellipse around `center` (in texels); `None` for an empty set.
@@ -52,4 +65,23 @@ fn lane_mask(bits: u8) -> TexelLanes {
 /// What stands where an ellipse holds no texel.
 fn between_texels(surface: &Surface, level: usize, center: [f32; 2]) -> Filtered {
     isotropic::bilinear(surface, level, center)
+}
+
+/// The greatest `n` with `4^n` up to a size above 0.
+fn power_of_4(size: PixelLanes) -> i32x8 {
+    // The exponent of a float is the whole part of its logarithm.
+    ((mask(size) >> 23_i32) - 127) >> 1_i32
+}
+
+/// Texels a repeat of a level for each lane.
+fn texels_a_repeat(surface: &Surface, levels: i32x8) -> [PixelLanes; 2] {
+    let level = levels.as_array()[0];
+    if levels.simd_eq(i32x8::splat(level)).all() {
+        return surface.texels_per_repeat(level as usize).map(PixelLanes::splat);
+    }
+    let mut texels = [[0.0; 8]; 2];
+    for (lane, &level) in levels.as_array().iter().enumerate() {
+        [texels[0][lane], texels[1][lane]] = surface.texels_per_repeat(level as usize);
+    }
+    texels.map(PixelLanes::new)
 }

@@ -2,6 +2,7 @@
 
 use super::gaussian::gaussian;
 use super::sums::PairSums;
+use super::{EllipseMeans, power_of_4, texels_a_repeat};
 use crate::filter::texel_set::lane_columns;
 use crate::filter::{Filtered, MAX_TEXELS, PixelFootprints, level_within_budget};
 use crate::settings::{Formulas, Settings};
@@ -37,10 +38,9 @@ pub struct Scans {
     limit: f32,
 }
 
-impl Scans {
+impl EllipseMeans for Scans {
     /// For pixels in repeats; of the settings those count that `Ewa` names.
-    #[must_use]
-    pub fn new(surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> Self {
+    fn new(surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> Self {
         let cut = settings.cut;
         let Placed { level, texels, a, b, c, f } =
             if settings.texel_budget == 0 || settings.formulas == Formulas::Printed {
@@ -77,22 +77,8 @@ impl Scans {
         }
     }
 
-    /// The mean of a pixel, and how many texels were in the batches that were read.
-    #[must_use]
-    pub fn mean(&self, surface: &Surface, lane: usize) -> (Filtered, u64) {
-        if surface.has_normals { self.mean_of::<true>(surface, lane) } else { self.mean_of::<false>(surface, lane) }
-    }
-
-    /// The colour of [`Self::mean`].
-    #[must_use]
-    #[inline]
-    pub fn color(&self, surface: &Surface, lane: usize) -> ([f32; 3], u64) {
-        let (mean, num_read) = self.mean_of::<false>(surface, lane);
-        (mean.color, num_read)
-    }
-
     #[inline(always)]
-    fn mean_of<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64) {
+    fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64) {
         let is_turned = self.is_turned.as_array()[lane] != 0;
         let index = self.level.as_array()[lane] as usize;
         let level = if is_turned { &surface.transposed[index] } else { &surface.levels[index] };
@@ -103,7 +89,9 @@ impl Scans {
         let center = [0, 1].map(|i| self.center[i].as_array()[lane]);
         (sums.mean().unwrap_or_else(|| super::between_texels(surface, index, center)), num_read)
     }
+}
 
+impl Scans {
     /// Sums over the rows of one pixel, two rows at a time: what lies outside the ellipse weighs nothing.
     #[inline(always)]
     fn scan<const IS_WIDE: bool, const HAS_NORMALS: bool>(&self, level: &Level, lane: usize) -> PairSums<HAS_NORMALS> {
@@ -156,11 +144,11 @@ impl Placed {
         let conics = pixels.conics(base, max_anisotropy);
         let most = (texel_budget as f32).min(MAX_TEXELS) * FRAC_1_PI;
         // The square of the short axis falls by 4 with each level, the square of the area by 16.
-        let for_width = levels_beyond(conics.short * (0.25 / (LEAST_SHORT * LEAST_SHORT)), 1);
+        let for_width = power_of_4(conics.short * (1.0 / (LEAST_SHORT * LEAST_SHORT)));
         let area = (conics.short + texel_kernel) * (conics.long + texel_kernel);
-        let for_budget = levels_beyond(area * (1.0 / (most * most)), 2);
+        let for_budget = power_of_4((area * (16.0 / (most * most))).sqrt());
         let last = surface.levels.len() as i32 - 1;
-        let level = for_width.max(for_budget).min(i32x8::splat(last));
+        let level = for_width.max(for_budget).max(i32x8::ZERO).min(i32x8::splat(last));
         let texels = texels_a_repeat(surface, level);
         let [su, sv] = [texels[0] * (1.0 / base[0]), texels[1] * (1.0 / base[1])];
         // Square texels of the base level in one of the level.
@@ -183,22 +171,4 @@ impl Placed {
         .map(PixelLanes::new);
         Self { level, texels: texels_a_repeat(surface, level), a, b, c, f }
     }
-}
-
-/// The least `n`, at least 0, for which a size is below `4^n` (of exponent bits 1) or `16^n` (2).
-fn levels_beyond(size: PixelLanes, bits: i32) -> i32x8 {
-    let exponent = (mask(size) >> 23_i32) - 127;
-    ((exponent >> bits) + 1).max(i32x8::ZERO)
-}
-
-fn texels_a_repeat(surface: &Surface, levels: i32x8) -> [PixelLanes; 2] {
-    let level = levels.as_array()[0];
-    if levels.simd_eq(i32x8::splat(level)).all() {
-        return surface.texels_per_repeat(level as usize).map(PixelLanes::splat);
-    }
-    let mut texels = [[0.0; 8]; 2];
-    for (lane, &level) in levels.as_array().iter().enumerate() {
-        [texels[0][lane], texels[1][lane]] = surface.texels_per_repeat(level as usize);
-    }
-    texels.map(PixelLanes::new)
 }

@@ -40,6 +40,44 @@ impl<const HAS_NORMALS: bool> PairSums<HAS_NORMALS> {
     }
 }
 
+/// Over sixteen texels of a row at a time, whose weights are summed apart.
+#[derive(Default)]
+pub(super) struct LineSums<const HAS_NORMALS: bool> {
+    pub(super) weight: LineLanes,
+    color: [LineLanes; 3],
+    normal: [LineLanes; 3],
+}
+
+impl<const HAS_NORMALS: bool> LineSums<HAS_NORMALS> {
+    #[inline(always)]
+    pub(super) fn add(&mut self, level: &Level, start: usize, weight: LineLanes) {
+        let plane = |plane: usize| Level::long_run(level.words(), start + plane * level.stride());
+        let (red_green, blue_height) = (plane(0), plane(1));
+        self.color[0] += low_halves(red_green) * weight;
+        self.color[1] += high_halves(red_green) * weight;
+        self.color[2] += low_halves(blue_height) * weight;
+        if HAS_NORMALS {
+            let normals = halves(plane(2)).map(unpack_normals);
+            (0..3).for_each(|i| self.normal[i] += join(normals.map(|normal| normal[i])) * weight);
+        }
+    }
+
+    /// The mean, if there is a weight.
+    #[inline(always)]
+    pub(super) fn mean(&self) -> Filtered {
+        let share = 1.0 / sum_of_all(self.weight);
+        let mean = |lanes: &[LineLanes; 3]| [0, 1, 2].map(|i| sum_of_all(lanes[i]) * share);
+        let normal = if HAS_NORMALS { mean(&self.normal) } else { [0.0, 0.0, 1.0] };
+        Filtered { color: mean(&self.color), normal }
+    }
+}
+
+#[inline(always)]
+fn sum_of_all(lanes: LineLanes) -> f32 {
+    let [a, b] = split(lanes);
+    sum(a + b)
+}
+
 /// Eight texels at a time.
 #[derive(Default)]
 pub(super) struct Sums {

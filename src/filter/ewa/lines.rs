@@ -1,0 +1,142 @@
+//! The mean over an ellipse from the texels next to its longer axis, on a level about as coarse as its shorter one.
+//!
+//! The longer axis is a line through the texels of that level. In each column that it crosses, two texels are interpolated;
+//! along it weighs the Gaussian. Interpolation and what the level averages are the kernel across: in base texels, on level
+//! l, their variance is `4^l / 6 + (4^l - 1) / 12`. So an ellipse takes few texels, in runs that lie in a row or two.
+
+use super::EllipseMeans;
+use super::sums::LineSums;
+use crate::filter::{Filtered, PixelFootprints};
+use crate::settings::Settings;
+use crate::simd::{LineLanes, PixelLanes, i32x8, lanes, mask};
+use crate::texture::{APRON, Surface};
+
+/// Variance of `exp(-2 r^2)` over the unit disc along a line through its middle.
+const VARIANCE: f32 = 0.171_7;
+
+/// A level is taken whose kernel has up to so many times the variance that is wanted across the ellipse.
+const MOST_BLUR: f32 = 1.5;
+
+/// The disc's Gaussian seen from the side: its integral along lines at a distance t from the middle, over that at t = 0, is
+/// about `z (c0 + c1 z + c2 z^2)` with `z = 1 - t^2`, off by 0.02.
+const PROFILE: [f32; 3] = [0.740_760_27, -0.603_611_7, 0.863_908_9];
+
+/// The profile's half length in standard deviations.
+const HALF_LENGTH: f32 = 1.0 / 0.412_934_7;
+
+/// Least variance along the line, in square texels: that of interpolation.
+const LEAST_VARIANCE: f32 = 1.0 / 6.0;
+
+/// Columns that are read at once.
+const COLUMNS: usize = 16;
+
+/// The longer axes of eight pixels' ellipses, each in the texels of its level, transposed where it is steep.
+#[derive(Clone, Copy, Debug)]
+pub struct Lines {
+    level: i32x8,
+    /// Whether rows run along v.
+    is_turned: i32x8,
+    /// The middle along and across the rows, texel centres at whole numbers.
+    place: [PixelLanes; 2],
+    /// Rows from column to column, -1 to 1.
+    slope: PixelLanes,
+    /// 1 over half the columns that the line crosses.
+    inverse_reach: PixelLanes,
+    /// The first column, and how many there are.
+    columns: [i32x8; 2],
+    /// From the middle to the first column.
+    start: PixelLanes,
+}
+
+impl EllipseMeans for Lines {
+    /// For pixels in repeats; of the settings `max_anisotropy` and `texel_budget` count.
+    fn new(surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> Self {
+        let base = surface.texels_per_repeat(0);
+        let conics = pixels.conics(base, settings.max_anisotropy);
+        // Two or three rows of a line's columns, and so many square texels of variance along it, are within the budget.
+        let most = (settings.texel_budget.max(16) as f32).min(4096.0) * (0.4 * 0.5 / HALF_LENGTH);
+        let along = conics.long * VARIANCE + 0.25;
+        let for_width = super::power_of_4((conics.short * (4.0 * VARIANCE) + 1.0) * MOST_BLUR);
+        let for_budget = super::power_of_4(along * (4.0 / (most * most)));
+        let last = i32x8::splat(surface.levels.len() as i32 - 1);
+        let level = for_width.max(for_budget).max(i32x8::ZERO).min(last);
+        // Levels in one base texel, by area.
+        let per_texel = lanes((i32x8::splat(127) - level - level) << 23_i32);
+        let variance = (along * per_texel - 1.0 / 12.0).fast_max(PixelLanes::splat(LEAST_VARIANCE));
+        // The direction of the longer axis: the eigenvector of [[C, -B/2], [-B/2, A]].
+        let (is_wide, half_b) = (conics.c.simd_gt(conics.a), conics.b * -0.5);
+        let x = is_wide.select(conics.long - conics.a, half_b);
+        let y = is_wide.select(half_b, conics.long - conics.c);
+        let is_turned = y.abs().simd_gt(x.abs());
+        let (x, y) = (is_turned.select(y, x), is_turned.select(x, y));
+        // A circle has no direction, and takes its row.
+        let is_round = x.simd_eq(PixelLanes::ZERO);
+        let slope = is_round.select(PixelLanes::ZERO, y / is_round.select(PixelLanes::ONE, x));
+        let reach = (variance / (slope * slope + 1.0)).sqrt() * HALF_LENGTH;
+        let texels = super::texels_a_repeat(surface, level);
+        let place = [0, 1].map(|i| pixels.center[i] * texels[i] - 0.5);
+        let place = [is_turned.select(place[1], place[0]), is_turned.select(place[0], place[1])];
+        let reach = reach.fast_max(PixelLanes::ONE);
+        let [first, last] = [(place[0] - reach).ceil(), (place[0] + reach).floor()];
+        Self {
+            level,
+            is_turned: mask(is_turned),
+            place,
+            slope,
+            inverse_reach: PixelLanes::ONE / reach,
+            columns: [first.fast_trunc_int(), (last - first).fast_trunc_int() + 1],
+            start: first - place[0],
+        }
+    }
+
+    #[inline(always)]
+    fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64) {
+        let is_turned = self.is_turned.as_array()[lane] != 0;
+        let levels = if is_turned { &surface.transposed } else { &surface.levels };
+        let level = &levels[self.level.as_array()[lane] as usize];
+        let at = |lanes: &PixelLanes| lanes.as_array()[lane];
+        let [y0, slope, start] = [&self.place[1], &self.slope, &self.start].map(at);
+        let inverse_reach = LineLanes::splat(at(&self.inverse_reach));
+        let [first, num] = self.columns.map(|columns| columns.as_array()[lane]);
+        let mut sums = LineSums::<HAS_NORMALS>::default();
+        let mut num_rows = 0;
+        for block in (0..num).step_by(COLUMNS) {
+            let start = start + block as f32;
+            let u = columns() + start;
+            let t = u * inverse_reach;
+            let z = (LineLanes::ONE - t * t).fast_max(LineLanes::ZERO);
+            let weight = ((z * PROFILE[2] + PROFILE[1]) * z + PROFILE[0]) * z;
+            sums.weight += weight;
+            // The rows next to the line between its first column and its last.
+            let length = (COLUMNS as i32).min(num - block) - 1;
+            let ends = [start * slope + y0, (start + length as f32) * slope + y0];
+            let lowest = floor(ends[0].min(ends[1]));
+            let num_more = floor(ends[0].max(ends[1])) - lowest - 1;
+            let y = u * slope + (y0 - lowest as f32);
+            let column = level.run_start(first + block);
+            let mut add = |row: i32| {
+                let part = (LineLanes::ONE - (y - row as f32).abs()).fast_max(LineLanes::ZERO);
+                sums.add(level, level.row_start(lowest + row) + column, weight * part);
+            };
+            // Three rows are the rule: no branch to foretell.
+            (0..3).for_each(&mut add);
+            (3..3 + num_more).for_each(&mut add);
+            num_rows += 3 + num_more.max(0) as u64;
+        }
+        (sums.mean(), num_rows * COLUMNS as u64)
+    }
+}
+
+/// The floor of a number within 2^30.
+#[inline(always)]
+fn floor(y: f32) -> i32 {
+    PixelLanes::splat(y).floor().fast_trunc_int().as_array()[0]
+}
+
+/// 0 to 15.
+#[inline(always)]
+fn columns() -> LineLanes {
+    LineLanes::new(std::array::from_fn(|lane| lane as f32))
+}
+
+const _: () = assert!(COLUMNS <= APRON, "a run of columns is one load");

@@ -1,0 +1,121 @@
+//! Pixels of one block by the filters that take what lies around the hit for flat: trilinear and the elliptical weighted
+//! average.
+
+use super::quads::{Ground, QuadShader};
+use super::queue::{AT_ONCE, Group, Queue};
+use crate::filter::ewa::{EllipseMeans, Lines, Scans};
+use crate::filter::{Differences, PixelFootprints, bounded_place, trilinear};
+use crate::raster::{QuadBlock, QuadPair};
+use crate::settings::{Formulas, Lighting, Settings};
+use crate::simd::PixelLanes;
+use crate::texture::FULL_F32;
+
+/// Pairs whose ellipses are found before their texels are read.
+const ELLIPSES_AT_ONCE: usize = 4;
+
+type Colors = Vec<[PixelLanes; 3]>;
+
+impl QuadShader<'_> {
+    /// Appends the colours of a block's pairs by the trilinear filter, unlit.
+    pub(super) fn trilinear(&self, ground: &Ground, block: &QuadBlock, colors: &mut Colors) {
+        let group = |place: [PixelLanes; 2], differences: &Differences| {
+            let [u, v] = bounded_place(place);
+            [u, v, trilinear::longest_side(ground.surface, differences)]
+        };
+        self.lined_up(ground, block, colors, group, |groups, found| trilinear::colors(ground.surface, groups, found));
+    }
+
+    /// Appends the colours of a block's pairs by the elliptical weighted average.
+    pub(super) fn ewa(&self, ground: &Ground, block: &QuadBlock, colors: &mut Colors) {
+        let Settings { every_texel, texel_budget, formulas, lighting, .. } = *self.settings;
+        let has_normals = lighting == Lighting::Lit && ground.surface.has_normals;
+        match (every_texel || texel_budget == 0 || formulas == Formulas::Printed, has_normals) {
+            (false, false) => self.ellipses::<Lines, false>(ground, block, colors),
+            (false, true) => self.ellipses::<Lines, true>(ground, block, colors),
+            (true, false) => self.ellipses::<Scans, false>(ground, block, colors),
+            (true, true) => self.ellipses::<Scans, true>(ground, block, colors),
+        }
+    }
+
+    fn ellipses<Means: EllipseMeans, const HAS_NORMALS: bool>(
+        &self,
+        ground: &Ground,
+        block: &QuadBlock,
+        colors: &mut Colors,
+    ) {
+        let mut num_texels = 0;
+        let mut found: [Option<(QuadPair, Means)>; ELLIPSES_AT_ONCE] = Default::default();
+        for first in (0..block.num_pairs()).step_by(ELLIPSES_AT_ONCE) {
+            // A pair's steps wait for each other, those of several do not.
+            for (i, found) in found.iter_mut().enumerate() {
+                *found = (first + i < block.num_pairs()).then(|| {
+                    let pair = block.pair(first + i);
+                    let (place, differences) = self.hits(ground, &pair);
+                    let pixels = PixelFootprints::new(&place, &differences, Default::default());
+                    (pair, Means::new(ground.surface, &pixels, self.settings))
+                });
+            }
+            for (pair, means) in found.iter().flatten() {
+                colors.push(self.means_of::<_, HAS_NORMALS>(ground, pair, means, &mut num_texels));
+            }
+        }
+        self.count([num_texels; 2]);
+    }
+
+    /// The colours of a pair; helper lanes are 0.
+    #[inline(always)]
+    fn means_of<Means: EllipseMeans, const HAS_NORMALS: bool>(
+        &self,
+        ground: &Ground,
+        pair: &QuadPair,
+        means: &Means,
+        num_texels: &mut u64,
+    ) -> [PixelLanes; 3] {
+        let is_lit = self.settings.lighting == Lighting::Lit;
+        let mut colors = [[0.0; 8]; 3];
+        for lane in pair.covered() {
+            let (mean, num) = means.mean::<HAS_NORMALS>(ground.surface, lane);
+            *num_texels += num;
+            let color = if is_lit { self.lit(ground, pair, lane, &mean).into() } else { mean.color };
+            (0..3).for_each(|c| colors[c][lane] = color[c]);
+        }
+        let colors = colors.map(PixelLanes::new);
+        if is_lit { colors } else { ground.tinted(&colors) }
+    }
+
+    /// Appends the colours that `look_up` finds for groups of what `group` makes of a pair's hits.
+    #[inline(always)]
+    fn lined_up<const N: usize>(
+        &self,
+        ground: &Ground,
+        block: &QuadBlock,
+        colors: &mut Colors,
+        group: impl Fn([PixelLanes; 2], &Differences) -> Group<N>,
+        mut look_up: impl FnMut(&[Group<N>], &mut [[PixelLanes; 3]; AT_ONCE]),
+    ) {
+        let (first, mut index) = (colors.len(), 0);
+        let mut queue = Queue::new();
+        colors.resize(first + block.num_pairs(), [PixelLanes::ZERO; 3]);
+        while index < block.num_pairs() || !queue.is_empty() {
+            while index < block.num_pairs() && !queue.is_full() {
+                let pair = block.pair(index);
+                let (place, differences) = self.hits(ground, &pair);
+                queue.push(&pair, index, &group(place, &differences));
+                index += 1;
+            }
+            queue.look_up(&mut colors[first..], |groups, found| {
+                look_up(groups, found);
+                found.iter_mut().for_each(|found| *found = ground.tinted(found));
+            });
+        }
+    }
+}
+
+impl Ground<'_> {
+    /// Stored colours as the material shows them.
+    #[inline(always)]
+    fn tinted(&self, stored: &[PixelLanes; 3]) -> [PixelLanes; 3] {
+        let scale = self.surface.color_scale / FULL_F32;
+        std::array::from_fn(|c| stored[c] * self.material.diffuse[c] * scale)
+    }
+}
