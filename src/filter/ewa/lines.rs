@@ -15,7 +15,7 @@ use crate::texture::{APRON, Surface};
 const VARIANCE: f32 = 0.171_7;
 
 /// A level is taken whose kernel has up to so many times the variance that is wanted across the ellipse.
-const MOST_BLUR: f32 = 1.5;
+const MOST_BLUR: f32 = 1.7;
 
 /// The disc's Gaussian seen from the side: its integral along lines at a distance t from the middle, over that at t = 0, is
 /// about `z (c0 + c1 z + c2 z^2)` with `z = 1 - t^2`, off by 0.02.
@@ -46,6 +46,8 @@ pub struct Lines {
     columns: [i32x8; 2],
     /// From the middle to the first column.
     start: PixelLanes,
+    /// How far from the line texels count, in rows, at least 1.
+    width: PixelLanes,
 }
 
 impl EllipseMeans for Lines {
@@ -63,6 +65,7 @@ impl EllipseMeans for Lines {
         // Levels in one base texel, by area.
         let per_texel = lanes((i32x8::splat(127) - level - level) << 23_i32);
         let variance = (along * per_texel - 1.0 / 12.0).fast_max(PixelLanes::splat(LEAST_VARIANCE));
+        let across = (conics.short * VARIANCE + 0.25) * per_texel - 1.0 / 12.0;
         // The direction of the longer axis: the eigenvector of [[C, -B/2], [-B/2, A]].
         let (is_wide, half_b) = (conics.c.simd_gt(conics.a), conics.b * -0.5);
         let x = is_wide.select(conics.long - conics.a, half_b);
@@ -73,6 +76,8 @@ impl EllipseMeans for Lines {
         let is_round = x.simd_eq(PixelLanes::ZERO);
         let slope = is_round.select(PixelLanes::ZERO, y / is_round.select(PixelLanes::ONE, x));
         let reach = (variance / (slope * slope + 1.0)).sqrt() * HALF_LENGTH;
+        // A triangle's variance is a sixth of its half width's square. Rows meet a slanted line aslant.
+        let width = (across * (slope * slope + 1.0) * 6.0).fast_max(PixelLanes::ONE).sqrt();
         let texels = super::texels_a_repeat(surface, level);
         let place = [0, 1].map(|i| pixels.center[i] * texels[i] - 0.5);
         let place = [is_turned.select(place[1], place[0]), is_turned.select(place[0], place[1])];
@@ -86,6 +91,7 @@ impl EllipseMeans for Lines {
             inverse_reach: PixelLanes::ONE / reach,
             columns: [first.fast_trunc_int(), (last - first).fast_trunc_int() + 1],
             start: first - place[0],
+            width,
         }
     }
 
@@ -95,7 +101,8 @@ impl EllipseMeans for Lines {
         let levels = if is_turned { &surface.transposed } else { &surface.levels };
         let level = &levels[self.level.as_array()[lane] as usize];
         let at = |lanes: &PixelLanes| lanes.as_array()[lane];
-        let [y0, slope, start] = [&self.place[1], &self.slope, &self.start].map(at);
+        let [y0, slope, start, width] = [&self.place[1], &self.slope, &self.start, &self.width].map(at);
+        let inverse_width = LineLanes::splat(1.0 / width);
         let inverse_reach = LineLanes::splat(at(&self.inverse_reach));
         let [first, num] = self.columns.map(|columns| columns.as_array()[lane]);
         let mut sums = LineSums::<HAS_NORMALS>::default();
@@ -106,16 +113,15 @@ impl EllipseMeans for Lines {
             let t = u * inverse_reach;
             let z = (LineLanes::ONE - t * t).fast_max(LineLanes::ZERO);
             let weight = ((z * PROFILE[2] + PROFILE[1]) * z + PROFILE[0]) * z;
-            sums.weight += weight;
-            // The rows next to the line between its first column and its last.
+            // The rows near the line between its first column and its last.
             let length = (COLUMNS as i32).min(num - block) - 1;
             let ends = [start * slope + y0, (start + length as f32) * slope + y0];
-            let lowest = floor(ends[0].min(ends[1]));
-            let num_more = floor(ends[0].max(ends[1])) - lowest - 1;
+            let lowest = floor(ends[0].min(ends[1]) - width) + 1;
+            let num_more = floor(ends[0].max(ends[1]) + width) - lowest - 2;
             let y = u * slope + (y0 - lowest as f32);
             let column = level.run_start(first + block);
             let mut add = |row: i32| {
-                let part = (LineLanes::ONE - (y - row as f32).abs()).fast_max(LineLanes::ZERO);
+                let part = (LineLanes::ONE - (y - row as f32).abs() * inverse_width).fast_max(LineLanes::ZERO);
                 sums.add(level, level.row_start(lowest + row) + column, weight * part);
             };
             // Three rows are the rule: no branch to foretell.

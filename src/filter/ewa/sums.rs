@@ -40,10 +40,10 @@ impl<const HAS_NORMALS: bool> PairSums<HAS_NORMALS> {
     }
 }
 
-/// Over sixteen texels of a row at a time, whose weights are summed apart.
+/// Over sixteen texels of a row at a time.
 #[derive(Default)]
 pub(super) struct LineSums<const HAS_NORMALS: bool> {
-    pub(super) weight: LineLanes,
+    weight: LineLanes,
     color: [LineLanes; 3],
     normal: [LineLanes; 3],
 }
@@ -53,6 +53,7 @@ impl<const HAS_NORMALS: bool> LineSums<HAS_NORMALS> {
     pub(super) fn add(&mut self, level: &Level, start: usize, weight: LineLanes) {
         let plane = |plane: usize| Level::long_run(level.words(), start + plane * level.stride());
         let (red_green, blue_height) = (plane(0), plane(1));
+        self.weight += weight;
         self.color[0] += low_halves(red_green) * weight;
         self.color[1] += high_halves(red_green) * weight;
         self.color[2] += low_halves(blue_height) * weight;
