@@ -71,11 +71,15 @@ fn cases() -> Vec<Case> {
         }
     }
     let mut add = |name: &str, wrap, settings| cases.push((name.into(), wrap, 64, settings));
-    for filter in [Filter::Visible, Filter::Horizon] {
+    for filter in [Filter::Trilinear, Filter::Ewa, Filter::Visible, Filter::Horizon] {
         add(&format!("{filter:?} mirror"), Wrap::Mirror, small(filter));
         add(&format!("{filter:?} clamp"), Wrap::Clamp, small(filter));
         add(&format!("{filter:?} flat"), Wrap::Repeat, Settings { parallax: false, ..small(filter) });
         add(&format!("{filter:?} anisotropy 4"), Wrap::Repeat, Settings { max_anisotropy: 4.0, ..small(filter) });
+    }
+    for (lighting, cut) in [(Lighting::Unlit, 1.0), (Lighting::Lit, 1.5)] {
+        let settings = Settings { every_texel: true, lighting, cut, ..small(Filter::Ewa) };
+        add(&format!("Ewa {lighting:?}, every texel, cut {cut}"), Wrap::Repeat, settings);
     }
     let visible = small(Filter::Visible);
     add("two-ended", Wrap::Repeat, Settings { visibility: Visibility::TwoEnded, ..visible.clone() });
@@ -95,6 +99,10 @@ fn cases() -> Vec<Case> {
     // Only maps of more than 128 x 128 texels have tables of what is seen from afar.
     cases.push(("far field".into(), Wrap::Repeat, 200, Settings { far_field_mib: 1, ..horizon.clone() }));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, horizon));
+    // Texels a side that are no power of two wrap by a division.
+    for filter in [Filter::Trilinear, Filter::Ewa] {
+        cases.push((format!("{filter:?}, 50 texels"), Wrap::Repeat, 50, small(filter)));
+    }
     cases
 }
 

@@ -64,7 +64,7 @@ fn settings() -> impl Strategy<Value = Settings> {
         pick(&[Derivatives::Flat, Derivatives::Relief]),
         pick(&[Formulas::Meant, Formulas::Printed]),
         pick(&[Lighting::Unlit, Lighting::Lit]),
-        any::<[bool; 3]>(),
+        any::<[bool; 4]>(),
     );
     let limit = || prop_oneof![5 => 1.0_f32..80.0, 1 => number()];
     let near_one = || prop_oneof![5 => 0.9_f32..1.1, 1 => number()];
@@ -75,7 +75,7 @@ fn settings() -> impl Strategy<Value = Settings> {
     let region = prop_oneof![3 => Just(None), 1 => [side(), side(), side(), side()].prop_map(Some)];
     (modes, sizes, grids, texels, region).prop_map(
         |(
-            (filter, visibility, derivatives, formulas, lighting, [parallax, far_field, cull_back_faces]),
+            (filter, visibility, derivatives, formulas, lighting, [parallax, far_field, cull_back_faces, every_texel]),
             (width, height, samples, lines, far_field_mib, [max_anisotropy, max_stretch, cut, texel_kernel]),
             (msaa, tile_size),
             texel_budget,
@@ -92,6 +92,7 @@ fn settings() -> impl Strategy<Value = Settings> {
             texel_budget,
             cut,
             texel_kernel,
+            every_texel,
             max_anisotropy,
             max_stretch,
             samples,

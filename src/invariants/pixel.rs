@@ -49,7 +49,7 @@ pub fn filtered(surface: &Surface, pixel: &Pixel, settings: &Settings) -> [f32; 
         Filter::Trilinear => {
             isotropic::trilinear(surface, footprint.center, isotropic::longest_side(surface, footprint))
         }
-        Filter::Ewa => ewa::mean(surface, footprint, settings).0,
+        Filter::Ewa => ewa::shown(surface, footprint, settings),
         Filter::Visible => {
             filter::ellipse_mean(surface, footprint, Some(*displacement), settings, &mut TexelSet::default()).0
         }

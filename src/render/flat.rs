@@ -3,10 +3,10 @@
 
 use super::quads::{Ground, QuadShader};
 use super::queue::{AT_ONCE, Group, Queue};
-use crate::filter::ewa::{EllipseMeans, Lines, Scans};
+use crate::filter::ewa::{EllipseMeans, Lines, Scans, takes_every_texel};
 use crate::filter::{Differences, PixelFootprints, bounded_place, trilinear};
 use crate::raster::{QuadBlock, QuadPair};
-use crate::settings::{Formulas, Lighting, Settings};
+use crate::settings::Lighting;
 use crate::simd::PixelLanes;
 use crate::texture::FULL_F32;
 
@@ -27,9 +27,8 @@ impl QuadShader<'_> {
 
     /// Appends the colours of a block's pairs by the elliptical weighted average.
     pub(super) fn ewa(&self, ground: &Ground, block: &QuadBlock, colors: &mut Colors) {
-        let Settings { every_texel, texel_budget, formulas, lighting, .. } = *self.settings;
-        let has_normals = lighting == Lighting::Lit && ground.surface.has_normals;
-        match (every_texel || texel_budget == 0 || formulas == Formulas::Printed, has_normals) {
+        let has_normals = self.settings.lighting == Lighting::Lit && ground.surface.has_normals;
+        match (takes_every_texel(self.settings), has_normals) {
             (false, false) => self.ellipses::<Lines, false>(ground, block, colors),
             (false, true) => self.ellipses::<Lines, true>(ground, block, colors),
             (true, false) => self.ellipses::<Scans, false>(ground, block, colors),

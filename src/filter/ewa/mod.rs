@@ -15,7 +15,7 @@ pub use scans::Scans;
 
 use super::texel_set::{RowQuadric, lane_columns};
 use super::{Ellipse, Filtered, Footprint, PixelFootprints, TexelSet, isotropic};
-use crate::settings::Settings;
+use crate::settings::{Formulas, Settings};
 use crate::simd::{PixelLanes, TexelLanes, exp_negative, i32x8, mask};
 use crate::texture::{Level, Surface};
 use sums::Sums;
@@ -27,6 +27,22 @@ pub trait EllipseMeans: Sized {
 
     /// The mean of a pixel, with the normal if the surface has one and it is asked for, and how many texels were read.
     fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64);
+}
+
+/// Whether every texel of an ellipse counts, and not only those next to its longer axis.
+#[must_use]
+pub fn takes_every_texel(settings: &Settings) -> bool {
+    settings.every_texel || settings.texel_budget == 0 || settings.formulas == Formulas::Printed
+}
+
+/// The mean of one pixel, as frames show it.
+#[must_use]
+pub fn shown(surface: &Surface, footprint: &Footprint, settings: &Settings) -> Filtered {
+    if takes_every_texel(settings) {
+        return mean(surface, footprint, settings).0;
+    }
+    let lines = Lines::new(surface, &PixelFootprints::splat(footprint, [0.0; 2]), settings);
+    if surface.has_normals { lines.mean::<true>(surface, 0).0 } else { lines.mean::<false>(surface, 0).0 }
 }
 
 /// The mean of all texels of the ellipse, and how many were in the batches that were read: one pass over the rows of the
