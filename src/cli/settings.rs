@@ -251,7 +251,7 @@ mod tests {
                 line.push(format!("--{}={default}", arg.get_long().unwrap()));
             }
         }
-        assert_eq!(line.len(), 17, "{line:?}");
+        assert_eq!(line.len(), 18, "{line:?}");
         assert_eq!(parse(&line.join(" ")).unwrap(), Settings::default());
     }
 
