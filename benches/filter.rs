@@ -70,7 +70,7 @@ fn means(criterion: &mut Criterion) {
             everywhere(b, view, |f, d| parallax::trace(street, f.center, d, parallax::texel_size(street, f, 1)));
         });
         group.bench_function(name("ewa"), |b| {
-            everywhere(b, view, |f, _| filter::ewa::mean(street, f, &settings));
+            everywhere(b, view, |f, _| filter::ewa::mean(street, f, &settings, true));
         });
         for (how, visibility) in [("exact", Visibility::Exact), ("two_ended", Visibility::TwoEnded)] {
             let settings = Settings { visibility, ..settings.clone() };

@@ -57,5 +57,5 @@ pub fn seen_color(surface: &Surface, footprint: &Footprint, view: [f32; 3], sett
 /// ```
 #[must_use]
 pub fn ewa_color(surface: &Surface, footprint: &Footprint, settings: &Settings) -> [f32; 3] {
-    ewa::mean(surface, footprint, settings).0.color.map(|c| c * (surface.color_scale / FULL_F32))
+    ewa::mean(surface, footprint, settings, false).0.color.map(|c| c * (surface.color_scale / FULL_F32))
 }

@@ -139,7 +139,7 @@ pub fn work_is_bounded(surface: &Surface, pixel: &Pixel, settings: &Settings) ->
         })?;
     }
     // An ellipse cut at 1.5 has 2.25 times the area, rows of equal length hold 4 / pi of it, vectors end on both sides.
-    let (_, read) = ewa::mean(surface, footprint, settings);
+    let (_, read) = ewa::mean(surface, footprint, settings, true);
     let edge = 40 * (ellipse.squared_axes()[1].sqrt() as u64 + 8);
     ensure(index + 1 == surface.levels.len() || read <= 3 * most + edge, || format!("{read} texels read of {most}"))
 }

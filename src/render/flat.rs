@@ -3,15 +3,15 @@
 
 use super::quads::{Ground, QuadShader};
 use super::queue::{AT_ONCE, Group, Queue};
-use crate::filter::ewa::{EllipseMeans, Lines, Scans, takes_every_texel};
-use crate::filter::{Differences, PixelFootprints, bounded_place, trilinear};
+use crate::filter::ewa::{self, Lines, takes_every_texel};
+use crate::filter::{Differences, Filtered, PixelFootprints, bounded_place, trilinear};
 use crate::raster::{QuadBlock, QuadPair};
 use crate::settings::Lighting;
 use crate::simd::PixelLanes;
 use crate::texture::FULL_F32;
 
-/// Pairs whose ellipses are found before their texels are read.
-const ELLIPSES_AT_ONCE: usize = 4;
+/// Pairs whose lines are found before their texels are read: a pair's steps wait for each other, those of several do not.
+const LINES_AT_ONCE: usize = 4;
 
 type Colors = Vec<[PixelLanes; 3]>;
 
@@ -27,59 +27,66 @@ impl QuadShader<'_> {
 
     /// Appends the colours of a block's pairs by the elliptical weighted average.
     pub(super) fn ewa(&self, ground: &Ground, block: &QuadBlock, colors: &mut Colors) {
-        let has_normals = self.settings.lighting == Lighting::Lit && ground.surface.has_normals;
-        match (takes_every_texel(self.settings), has_normals) {
-            (false, false) => self.ellipses::<Lines, false>(ground, block, colors),
-            (false, true) => self.ellipses::<Lines, true>(ground, block, colors),
-            (true, false) => self.ellipses::<Scans, false>(ground, block, colors),
-            (true, true) => self.ellipses::<Scans, true>(ground, block, colors),
+        if takes_every_texel(self.settings) {
+            let mut num_texels = 0;
+            colors.extend(block.pairs().map(|pair| {
+                let (place, differences) = self.hits(ground, &pair);
+                let mean = |lane: usize| {
+                    let footprint = differences.footprint(&place, lane);
+                    ewa::mean(ground.surface, &footprint, self.settings, self.is_lit())
+                };
+                self.means(ground, &pair, mean, &mut num_texels)
+            }));
+            self.count([num_texels; 2]);
+        } else if self.is_lit() && ground.surface.has_normals {
+            self.by_lines::<true>(ground, block, colors);
+        } else {
+            self.by_lines::<false>(ground, block, colors);
         }
     }
 
-    fn ellipses<Means: EllipseMeans, const HAS_NORMALS: bool>(
-        &self,
-        ground: &Ground,
-        block: &QuadBlock,
-        colors: &mut Colors,
-    ) {
+    fn by_lines<const HAS_NORMALS: bool>(&self, ground: &Ground, block: &QuadBlock, colors: &mut Colors) {
         let mut num_texels = 0;
-        let mut found: [Option<(QuadPair, Means)>; ELLIPSES_AT_ONCE] = Default::default();
-        for first in (0..block.num_pairs()).step_by(ELLIPSES_AT_ONCE) {
-            // A pair's steps wait for each other, those of several do not.
+        let mut found: [Option<(QuadPair, Lines)>; LINES_AT_ONCE] = Default::default();
+        for first in (0..block.num_pairs()).step_by(LINES_AT_ONCE) {
             for (i, found) in found.iter_mut().enumerate() {
-                *found = (first + i < block.num_pairs()).then(|| {
-                    let pair = block.pair(first + i);
+                let pair = (first + i < block.num_pairs()).then(|| block.pair(first + i));
+                *found = pair.map(|pair| {
                     let (place, differences) = self.hits(ground, &pair);
                     let pixels = PixelFootprints::new(&place, &differences, Default::default());
-                    (pair, Means::new(ground.surface, &pixels, self.settings))
+                    (pair, Lines::new(ground.surface, &pixels, self.settings))
                 });
             }
-            for (pair, means) in found.iter().flatten() {
-                colors.push(self.means_of::<_, HAS_NORMALS>(ground, pair, means, &mut num_texels));
+            for (pair, lines) in found.iter().flatten() {
+                let mean = |lane: usize| lines.mean::<HAS_NORMALS>(ground.surface, lane);
+                colors.push(self.means(ground, pair, mean, &mut num_texels));
             }
         }
         self.count([num_texels; 2]);
     }
 
-    /// The colours of a pair; helper lanes are 0.
+    fn is_lit(&self) -> bool {
+        self.settings.lighting == Lighting::Lit
+    }
+
+    /// The colours of a pair from its pixels' means; helper lanes are 0.
     #[inline(always)]
-    fn means_of<Means: EllipseMeans, const HAS_NORMALS: bool>(
+    fn means(
         &self,
         ground: &Ground,
         pair: &QuadPair,
-        means: &Means,
+        mean: impl Fn(usize) -> (Filtered, u64),
         num_texels: &mut u64,
     ) -> [PixelLanes; 3] {
-        let is_lit = self.settings.lighting == Lighting::Lit;
         let mut colors = [[0.0; 8]; 3];
         for lane in pair.covered() {
-            let (mean, num) = means.mean::<HAS_NORMALS>(ground.surface, lane);
+            let (mean, num) = mean(lane);
             *num_texels += num;
-            let color = if is_lit { self.lit(ground, pair, lane, &mean).into() } else { mean.color };
+            let color = if self.is_lit() { self.lit(ground, pair, lane, &mean).into() } else { mean.color };
             (0..3).for_each(|c| colors[c][lane] = color[c]);
         }
         let colors = colors.map(PixelLanes::new);
-        if is_lit { colors } else { ground.tinted(&colors) }
+        if self.is_lit() { colors } else { ground.tinted(&colors) }
     }
 
     /// Appends the colours that `look_up` finds for groups of what `group` makes of a pair's hits.

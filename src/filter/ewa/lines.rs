@@ -4,7 +4,6 @@
 //! along it weighs the Gaussian. Interpolation and what the level averages are the kernel across: in base texels, on level
 //! l, their variance is `4^l / 6 + (4^l - 1) / 12`. So an ellipse takes few texels, in runs that lie in a row or two.
 
-use super::EllipseMeans;
 use super::sums::LineSums;
 use crate::filter::{Filtered, PixelFootprints};
 use crate::settings::Settings;
@@ -50,9 +49,10 @@ pub struct Lines {
     width: PixelLanes,
 }
 
-impl EllipseMeans for Lines {
+impl Lines {
     /// For pixels in repeats; of the settings `max_anisotropy` and `texel_budget` count.
-    fn new(surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> Self {
+    #[must_use]
+    pub fn new(surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> Self {
         let base = surface.texels_per_repeat(0);
         let conics = pixels.conics(base, settings.max_anisotropy);
         // Two or three rows of a line's columns, and so many square texels of variance along it, are within the budget.
@@ -95,8 +95,10 @@ impl EllipseMeans for Lines {
         }
     }
 
+    /// The mean of a pixel, and how many texels were read. Only surfaces that have normals may be asked for them.
+    #[must_use]
     #[inline(always)]
-    fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64) {
+    pub fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64) {
         let is_turned = self.is_turned.as_array()[lane] != 0;
         let levels = if is_turned { &surface.transposed } else { &surface.levels };
         let level = &levels[self.level.as_array()[lane] as usize];

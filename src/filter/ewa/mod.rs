@@ -1,33 +1,22 @@
 //! Elliptical weighted average (Heckbert 1989): the mean of a set of texels with the weight `exp(-2 r^2)`, a Gaussian
 //! over the disc of radius one pixel, `r^2 = (A U^2 + B U V + C V^2) / F <= 1`.
 //!
-//! [`Scans`] finds the rows of texels of eight pixels at once, lanes being pixels, and takes one pixel's mean after the
-//! other, lanes being texels. [`Lines`] takes the texels
-//! along the longer axis only.
+//! [`mean`] takes all texels of an ellipse, [`Lines`] those next to its longer axis.
 
 mod gaussian;
 mod lines;
-mod scans;
 mod sums;
+mod whole;
 
 pub use lines::Lines;
-pub use scans::Scans;
+pub use whole::mean;
 
 use super::texel_set::{RowQuadric, lane_columns};
-use super::{Ellipse, Filtered, Footprint, PixelFootprints, TexelSet, isotropic};
+use super::{Ellipse, Filtered, Footprint, PixelFootprints, TexelSet};
 use crate::settings::{Formulas, Settings};
 use crate::simd::{PixelLanes, TexelLanes, exp_negative, i32x8, mask};
 use crate::texture::{Level, Surface};
 use sums::Sums;
-
-/// Eight ellipses whose means can be taken one by one.
-pub trait EllipseMeans: Sized {
-    /// For pixels in repeats.
-    fn new(surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> Self;
-
-    /// The mean of a pixel, with the normal if the surface has one and it is asked for, and how many texels were read.
-    fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64);
-}
 
 /// Whether every texel of an ellipse counts, and not only those next to its longer axis.
 #[must_use]
@@ -39,18 +28,10 @@ pub fn takes_every_texel(settings: &Settings) -> bool {
 #[must_use]
 pub fn shown(surface: &Surface, footprint: &Footprint, settings: &Settings) -> Filtered {
     if takes_every_texel(settings) {
-        return mean(surface, footprint, settings).0;
+        return mean(surface, footprint, settings, true).0;
     }
     let lines = Lines::new(surface, &PixelFootprints::splat(footprint, [0.0; 2]), settings);
     if surface.has_normals { lines.mean::<true>(surface, 0).0 } else { lines.mean::<false>(surface, 0).0 }
-}
-
-/// The mean of all texels of the ellipse, and how many were in the batches that were read: one pass over the rows of the
-/// coarsest level on which the Gaussian is sampled well, or of the base level where `texel_budget` is 0.
-#[must_use]
-pub fn mean(surface: &Surface, footprint: &Footprint, settings: &Settings) -> (Filtered, u64) {
-    let scans = Scans::new(surface, &PixelFootprints::splat(footprint, [0.0; 2]), settings);
-    if surface.has_normals { scans.mean::<true>(surface, 0) } else { scans.mean::<false>(surface, 0) }
 }
 
 /// The weighted mean of the texels of `set` in the ellipse around `center` (in texels); `None` for an empty set.
@@ -76,11 +57,6 @@ pub fn average(level: &Level, set: &TexelSet, ellipse: &Ellipse, center: [f32; 2
 /// All bits of the lanes whose bit is set.
 fn lane_mask(bits: u8) -> TexelLanes {
     TexelLanes::new(std::array::from_fn(|lane| f32::from_bits(if bits >> lane & 1 == 1 { u32::MAX } else { 0 })))
-}
-
-/// What stands where an ellipse holds no texel.
-fn between_texels(surface: &Surface, level: usize, center: [f32; 2]) -> Filtered {
-    isotropic::bilinear(surface, level, center)
 }
 
 /// The greatest `n` with `4^n` up to a size above 0.

@@ -25,6 +25,9 @@ fn integral(z: TexelLanes) -> TexelLanes {
     ((((s * 0.028_880_1 - 0.148_824_7) * s + 0.381_363_6) * s - 0.663_076_2) * s + 0.999_799) * z
 }
 
+/// A line through the middle of an ellipse weighs about 1; rounding, 1e-7.
+const LEAST_WEIGHT: f32 = 1e-5;
+
 /// Weighted sums.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Totals {
@@ -96,12 +99,13 @@ impl Totals {
         (3..CHANNELS).for_each(|i| self.normal[i - 3] += sums[i] * share);
     }
 
-    /// The mean; `None` where nothing was added.
+    /// The mean; `None` where no more was added than the rounding of [`integral`]'s differences makes.
     pub(super) fn mean(&self, is_lit: bool) -> Option<Filtered> {
         let weight = sum(self.weight);
         let mean = |lanes: [TexelLanes; 3]| lanes.map(|lanes| sum(lanes) / weight);
         let normal = if is_lit { mean(self.normal) } else { [0.0, 0.0, 1.0] };
-        (weight > 0.0).then(|| Filtered { color: mean(self.color), normal })
+        // A difference of 0 may be rounded below.
+        (weight > LEAST_WEIGHT).then(|| Filtered { color: mean(self.color).map(|c| c.max(0.0)), normal })
     }
 }
 
