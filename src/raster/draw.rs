@@ -163,7 +163,8 @@ impl Painter<'_> {
         self.find_planes(scratch);
         let found = (self.clock)();
         let is_full = self.is_full(&rect, &scratch.quads);
-        if !self.is_fresh && !(is_full && scratch.quads.iter().all(|quad| self.is_whole(quad))) {
+        let is_set = is_full && scratch.quads.iter().all(|quad| self.is_whole(quad));
+        if !(self.is_fresh || is_set) {
             rows.iter_mut().for_each(|row| row.fill(Pixel::default()));
         }
         let (pixels_shaded, shade_ms) = self.shade_quads(&rect, rows, scratch, shade);

@@ -79,14 +79,21 @@ impl QuadShader<'_> {
         num_texels: &mut u64,
     ) -> [PixelLanes; 3] {
         let mut colors = [[0.0; 8]; 3];
+        let mut set = |lane: usize, color: [f32; 3]| (0..3).for_each(|c| colors[c][lane] = color[c]);
+        if self.is_lit() {
+            for lane in pair.covered() {
+                let (mean, num) = mean(lane);
+                *num_texels += num;
+                set(lane, self.lit(ground, pair, lane, &mean).into());
+            }
+            return colors.map(PixelLanes::new);
+        }
         for lane in pair.covered() {
             let (mean, num) = mean(lane);
             *num_texels += num;
-            let color = if self.is_lit() { self.lit(ground, pair, lane, &mean).into() } else { mean.color };
-            (0..3).for_each(|c| colors[c][lane] = color[c]);
+            set(lane, mean.color);
         }
-        let colors = colors.map(PixelLanes::new);
-        if self.is_lit() { colors } else { ground.tinted(&colors) }
+        ground.tinted(&colors.map(PixelLanes::new))
     }
 
     /// Appends the colours that `look_up` finds for groups of what `group` makes of a pair's hits.

@@ -39,7 +39,7 @@ impl<const N: usize> Queue<N> {
     #[inline(always)]
     pub(super) fn push(&mut self, pair: &QuadPair, index: usize, group: &Group<N>) {
         let numbers = std::array::from_fn(|lane| (8 * index + lane) as u32);
-        if self.num % 8 == 0 && pair.is_whole() {
+        if self.num.is_multiple_of(8) && pair.is_whole() {
             (self.groups[self.num / 8], self.pixels[self.num / 8]) = (*group, numbers);
             self.num += 8;
             return;
@@ -73,7 +73,7 @@ impl<const N: usize> Queue<N> {
         look_up(&self.groups[..num_groups], &mut found);
         for (group, (found, pixels)) in found.iter().zip(&self.pixels).enumerate().take(num_groups) {
             let num = (self.num - 8 * group).min(8);
-            if num == 8 && pixels[0] % 8 == 0 && pixels[7] == pixels[0] + 7 {
+            if num == 8 && pixels[0].is_multiple_of(8) && pixels[7] == pixels[0] + 7 {
                 colors[pixels[0] as usize / 8] = *found;
                 continue;
             }

@@ -8,7 +8,7 @@ use super::sums::LineSums;
 use crate::filter::{Filtered, PixelFootprints};
 use crate::settings::Settings;
 use crate::simd::{LineLanes, PixelLanes, i32x8, lanes, mask};
-use crate::texture::{APRON, Surface};
+use crate::texture::{APRON, Level, Surface};
 
 /// Variance of `exp(-2 r^2)` over the unit disc along a line through its middle.
 const VARIANCE: f32 = 0.171_7;
@@ -122,16 +122,37 @@ impl Lines {
             let num_more = floor(ends[0].max(ends[1]) + width) - lowest - 2;
             let y = u * slope + (y0 - lowest as f32);
             let column = level.run_start(first + block);
-            let mut add = |row: i32| {
-                let part = (LineLanes::ONE - (y - row as f32).abs() * inverse_width).fast_max(LineLanes::ZERO);
-                sums.add(level, level.row_start(lowest + row) + column, weight * part);
-            };
+            let near = NearRows { level, column, lowest, y, inverse_width, weight };
             // Three rows are the rule: no branch to foretell.
-            (0..3).for_each(&mut add);
-            (3..3 + num_more).for_each(&mut add);
+            for row in 0..3 {
+                near.add(row, &mut sums);
+            }
+            for row in 3..3 + num_more {
+                near.add(row, &mut sums);
+            }
             num_rows += 3 + num_more.max(0) as u64;
         }
         (sums.mean(), num_rows * COLUMNS as u64)
+    }
+}
+
+/// The rows near a line in sixteen columns.
+struct NearRows<'a> {
+    level: &'a Level,
+    /// Where the first column's texels start in a row.
+    column: usize,
+    lowest: i32,
+    /// The line's place in each column, in rows from the lowest one.
+    y: LineLanes,
+    inverse_width: LineLanes,
+    weight: LineLanes,
+}
+
+impl NearRows<'_> {
+    #[inline(always)]
+    fn add<const HAS_NORMALS: bool>(&self, row: i32, sums: &mut LineSums<HAS_NORMALS>) {
+        let part = (LineLanes::ONE - (self.y - row as f32).abs() * self.inverse_width).fast_max(LineLanes::ZERO);
+        sums.add(self.level, self.level.row_start(self.lowest + row) + self.column, self.weight * part);
     }
 }
 
