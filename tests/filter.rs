@@ -3,9 +3,10 @@
 mod common;
 
 use basrelief::filter::visible::{Occlusion, remove_hidden};
-use basrelief::filter::{Ellipse, TexelSet, ewa, horizon};
+use basrelief::filter::{Ellipse, TexelSet, ewa, horizon, isotropic, trilinear};
 use basrelief::invariants::{self, Checked, Pixel};
 use basrelief::reference::{Conic, Lines, RAY_TIE, mean, ray_margin, supersampled, texels};
+use basrelief::simd::PixelLanes;
 use basrelief::texture::{ColorImage, FULL, HeightImage, Surface, SurfaceMaps, Wrap};
 use basrelief::{Filter, Formulas, Settings, Visibility};
 use common::{Random, cobbles};
@@ -328,6 +329,29 @@ proptest! {
     }
 
     #[test]
+    fn trilinear_lanes_are_the_scalar_look_ups(
+        made in (any_maps(), prop::sample::select(vec![1_u32, 1, 1, 5])).prop_map(|(Made(w, h, wrap, seed), scale)| Made(w * scale, h * scale, wrap, seed)),
+        center in prop::array::uniform2(any_number()),
+        steps in prop::array::uniform16(-0.2_f32..0.2),
+        sizes in prop::array::uniform8(0.0_f32..40.0),
+        is_near in any::<bool>(),
+    ) {
+        let surface = made.surface();
+        let center = center.map(|c| if c.abs() <= 1e6 { c } else { 0.0 });
+        let reach = if is_near { 0.1 } else { 100.0 };
+        let place = |lane: usize| [center[0] + steps[2 * lane] * reach, center[1] + steps[2 * lane + 1] * reach];
+        let lanes = |axis: usize| PixelLanes::new(std::array::from_fn(|lane| place(lane)[axis]));
+        let size = |lane: usize| if is_near { 1.0 + sizes[0] + 0.02 * sizes[lane] } else { sizes[lane] };
+        let mut found = [[PixelLanes::ZERO; 3]; 2];
+        let group = [lanes(0), lanes(1), PixelLanes::new(std::array::from_fn(size))];
+        trilinear::colors(&surface, &[group; 2], &mut found);
+        for lane in 0..8 {
+            let expected = isotropic::trilinear(&surface, place(lane), size(lane)).color;
+            prop_assert_eq!(found[1].map(|lanes| lanes.as_array()[lane]), expected, "{} {:?}", lane, place(lane));
+        }
+    }
+
+    #[test]
     fn horizon_mean_is_the_references(made in any_maps(), pixel in pixel(0.5, 1.0)) {
         let surface = made.surface();
         let found = horizon::visible_mean(&surface, &pixel.footprint, pixel.displacement, &base_level(Filter::Horizon), None).0;
@@ -356,6 +380,39 @@ fn reference_lines<'a>(surface: &'a Surface, pixel: &Pixel) -> Lines<'a> {
 fn floor_pixel(center: [f32; 2], across: f32, aspect: f32, angle: f32, walk: f32) -> Pixel {
     let (c, s) = (angle.cos(), angle.sin());
     Pixel::new(center, [-s * across, c * across], [c * across * aspect, s * across * aspect], [c * walk, s * walk])
+}
+
+#[test]
+fn averages_of_long_ellipses_are_close_to_many_rays() {
+    let surface = surface(SurfaceMaps { height: None, ..cobbles(64, 4) });
+    let mut random = Random(9);
+    let mut squares = [0.0_f64; 2];
+    for _ in 0..300 {
+        let center = [0; 2].map(|_| random.within(0.0, 1.0));
+        let angle = random.within(0.0, std::f32::consts::TAU);
+        let pixel = floor_pixel(center, random.within(0.01, 0.1), random.within(1.0, 12.0), angle, 0.0);
+        let truth = supersampled(&surface, &pixel.footprint, pixel.displacement, 24);
+        for (every_texel, sum) in [true, false].into_iter().zip(&mut squares) {
+            let color = invariants::filtered(&surface, &pixel, &Settings { every_texel, ..settings(Filter::Ewa) });
+            *sum += (0..3).map(|i| (f64::from(color[i]) - truth[i]).powi(2)).sum::<f64>() / 3.0;
+        }
+    }
+    let [every, near_the_axis] = squares.map(|sum| (sum / 300.0).sqrt());
+    println!("root mean square error: every texel {every}, near the longer axis {near_the_axis}");
+    assert!(every < 0.002 && near_the_axis < 0.004, "every {every}, near the axis {near_the_axis}");
+}
+
+/// Places where an f32 tells no texels apart, on more texels than its digits.
+#[test]
+fn averages_far_from_the_texture_are_finite() {
+    let surface = surface(maps(4096, 2, Wrap::Repeat, 3));
+    for place in [1e6, -1e6, 999_999.94, 16_777.216] {
+        for view in [[1.0, 0.0], [16.0, 16.0], [0.0, 1e-7]] {
+            let pixel = Pixel::new([place, -place], view, [view[1], 0.003], [0.0; 2]);
+            let color = invariants::filtered(&surface, &pixel, &settings(Filter::Ewa));
+            assert!(color.iter().all(|c| (0.0..=1.001).contains(c)), "{place} {view:?} {color:?}");
+        }
+    }
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! The mean over an ellipse from the texels next to its longer axis, on a level about as coarse as its shorter one.
 //!
-//! The longer axis is a line through the texels of that level. In each column that it crosses, two texels are interpolated;
-//! along it weighs the Gaussian. Interpolation and what the level averages are the kernel across: in base texels, on level
-//! l, their variance is `4^l / 6 + (4^l - 1) / 12`. So an ellipse takes few texels, in runs that lie in a row or two.
+//! The longer axis is a line through the texels of that level. Along it weighs the Gaussian; across it, in each column that it
+//! crosses, a triangle, which is interpolation or as much wider as the ellipse asks for: what the level averages has a
+//! variance of `(4^l - 1) / 12` square base texels on level l, the triangle a sixth of its half width's square. So an ellipse
+//! takes few texels, in runs that lie in a few rows.
 
 use super::sums::LineSums;
 use crate::filter::{Filtered, PixelFootprints};
@@ -13,7 +14,7 @@ use crate::texture::{APRON, Level, Surface};
 /// Variance of `exp(-2 r^2)` over the unit disc along a line through its middle.
 const VARIANCE: f32 = 0.171_7;
 
-/// A level is taken whose kernel has up to so many times the variance that is wanted across the ellipse.
+/// A level is taken on which interpolation has up to so many times the variance that is wanted across the ellipse.
 const MOST_BLUR: f32 = 1.7;
 
 /// The disc's Gaussian seen from the side: its integral along lines at a distance t from the middle, over that at t = 0, is
@@ -25,6 +26,9 @@ const HALF_LENGTH: f32 = 1.0 / 0.412_934_7;
 
 /// Least variance along the line, in square texels: that of interpolation.
 const LEAST_VARIANCE: f32 = 1.0 / 6.0;
+
+/// Farthest texel from the pattern's first: numbers up to there, and some beyond, fit 32 bits.
+const FARTHEST: f32 = (1 << 29) as f32;
 
 /// Columns that are read at once.
 const COLUMNS: usize = 16;
@@ -62,7 +66,7 @@ impl Lines {
         let for_budget = super::power_of_4(along * (4.0 / (most * most)));
         let last = i32x8::splat(surface.levels.len() as i32 - 1);
         let level = for_width.max(for_budget).max(i32x8::ZERO).min(last);
-        // Levels in one base texel, by area.
+        // Square texels of the level in one of the base level.
         let per_texel = lanes((i32x8::splat(127) - level - level) << 23_i32);
         let variance = (along * per_texel - 1.0 / 12.0).fast_max(PixelLanes::splat(LEAST_VARIANCE));
         let across = (conics.short * VARIANCE + 0.25) * per_texel - 1.0 / 12.0;
@@ -76,10 +80,13 @@ impl Lines {
         let is_round = x.simd_eq(PixelLanes::ZERO);
         let slope = is_round.select(PixelLanes::ZERO, y / is_round.select(PixelLanes::ONE, x));
         let reach = (variance / (slope * slope + 1.0)).sqrt() * HALF_LENGTH;
-        // A triangle's variance is a sixth of its half width's square. Rows meet a slanted line aslant.
+        // Rows meet a slanted line aslant.
         let width = (across * (slope * slope + 1.0) * 6.0).fast_max(PixelLanes::ONE).sqrt();
         let texels = super::texels_a_repeat(surface, level);
-        let place = [0, 1].map(|i| pixels.center[i] * texels[i] - 0.5);
+        // So far away that an f32 tells no texels apart any more, any will do.
+        let bounded =
+            |place: PixelLanes| place.fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST));
+        let place = [0, 1].map(|i| bounded(pixels.center[i] * texels[i] - 0.5));
         let place = [is_turned.select(place[1], place[0]), is_turned.select(place[0], place[1])];
         let reach = reach.fast_max(PixelLanes::ONE);
         let [first, last] = [(place[0] - reach).ceil(), (place[0] + reach).floor()];
