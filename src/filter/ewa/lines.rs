@@ -5,7 +5,7 @@
 //! variance of `(4^l - 1) / 12` square base texels on level l, the triangle a sixth of its half width's square. So an ellipse
 //! takes few texels, in runs that lie in a few rows.
 
-use super::sums::LineSums;
+use super::sums::WideSums;
 use crate::filter::{Filtered, PixelFootprints};
 use crate::settings::Settings;
 use crate::simd::{LineLanes, PixelLanes, i32x8, lanes, mask};
@@ -114,7 +114,7 @@ impl Lines {
         let inverse_width = LineLanes::splat(1.0 / width);
         let inverse_reach = LineLanes::splat(at(&self.inverse_reach));
         let [first, num] = self.columns.map(|columns| columns.as_array()[lane]);
-        let mut sums = LineSums::<HAS_NORMALS>::default();
+        let mut sums = WideSums::<HAS_NORMALS>::default();
         let mut num_rows = 0;
         for block in (0..num).step_by(COLUMNS) {
             let start = start + block as f32;
@@ -139,7 +139,8 @@ impl Lines {
             }
             num_rows += 3 + num_more.max(0) as u64;
         }
-        (sums.mean(), num_rows * COLUMNS as u64)
+        // The column next to the middle always weighs something.
+        (sums.mean().unwrap_or_default(), num_rows * COLUMNS as u64)
     }
 }
 
@@ -157,9 +158,9 @@ struct NearRows<'a> {
 
 impl NearRows<'_> {
     #[inline(always)]
-    fn add<const HAS_NORMALS: bool>(&self, row: i32, sums: &mut LineSums<HAS_NORMALS>) {
+    fn add<const HAS_NORMALS: bool>(&self, row: i32, sums: &mut WideSums<HAS_NORMALS>) {
         let part = (LineLanes::ONE - (self.y - row as f32).abs() * self.inverse_width).fast_max(LineLanes::ZERO);
-        sums.add(self.level, self.level.row_start(self.lowest + row) + self.column, self.weight * part);
+        sums.add_run(self.level, self.level.row_start(self.lowest + row) + self.column, self.weight * part);
     }
 }
 

@@ -2,56 +2,34 @@
 
 use crate::filter::{Filtered, unpack_normals};
 use crate::simd::{
-    LineLanes, TexelLanes, halves, high_half, high_halves, join, join_words, low_half, low_halves, split, sum,
+    LineLanes, TexelLanes, halves, high_half, high_halves, join, join_words, low_half, low_halves, split, sum, u32x16,
 };
 use crate::texture::Level;
 
-/// Over two rows at a time, eight texels of each.
+/// Sixteen texels at a time: of a row, or eight of each of two.
 #[derive(Default)]
-pub(super) struct PairSums<const HAS_NORMALS: bool> {
+pub(super) struct WideSums<const HAS_NORMALS: bool> {
     weight: LineLanes,
     color: [LineLanes; 3],
     normal: [LineLanes; 3],
 }
 
-impl<const HAS_NORMALS: bool> PairSums<HAS_NORMALS> {
+impl<const HAS_NORMALS: bool> WideSums<HAS_NORMALS> {
+    /// Adds sixteen texels of a row, from `start`.
     #[inline(always)]
-    pub(super) fn add(&mut self, level: &Level, runs: [usize; 2], weight: LineLanes) {
-        let pair = |plane: usize| join_words(runs.map(|run| Level::run(level.words(), run + plane * level.stride())));
-        let (red_green, blue_height) = (pair(0), pair(1));
-        self.weight += weight;
-        self.color[0] += low_halves(red_green) * weight;
-        self.color[1] += high_halves(red_green) * weight;
-        self.color[2] += low_halves(blue_height) * weight;
-        if HAS_NORMALS {
-            let normals = halves(pair(2)).map(unpack_normals);
-            (0..3).for_each(|i| self.normal[i] += join(normals.map(|normal| normal[i])) * weight);
-        }
+    pub(super) fn add_run(&mut self, level: &Level, start: usize, weight: LineLanes) {
+        self.add(|plane| Level::long_run(level.words(), start + plane * level.stride()), weight);
     }
 
-    /// The mean over both rows; `None` without a weight.
+    /// Adds eight texels of each of two rows.
     #[inline(always)]
-    pub(super) fn mean(&self) -> Option<Filtered> {
-        let fold = |lanes: LineLanes| {
-            let [a, b] = split(lanes);
-            a + b
-        };
-        Sums { weight: fold(self.weight), color: self.color.map(fold), normal: self.normal.map(fold) }.mean(HAS_NORMALS)
+    pub(super) fn add_runs(&mut self, level: &Level, starts: [usize; 2], weight: LineLanes) {
+        let run = |plane: usize, start: usize| Level::run(level.words(), start + plane * level.stride());
+        self.add(|plane| join_words([run(plane, starts[0]), run(plane, starts[1])]), weight);
     }
-}
 
-/// Over sixteen texels of a row at a time.
-#[derive(Default)]
-pub(super) struct LineSums<const HAS_NORMALS: bool> {
-    weight: LineLanes,
-    color: [LineLanes; 3],
-    normal: [LineLanes; 3],
-}
-
-impl<const HAS_NORMALS: bool> LineSums<HAS_NORMALS> {
     #[inline(always)]
-    pub(super) fn add(&mut self, level: &Level, start: usize, weight: LineLanes) {
-        let plane = |plane: usize| Level::long_run(level.words(), start + plane * level.stride());
+    fn add(&mut self, plane: impl Fn(usize) -> u32x16, weight: LineLanes) {
         let (red_green, blue_height) = (plane(0), plane(1));
         self.weight += weight;
         self.color[0] += low_halves(red_green) * weight;
@@ -63,13 +41,14 @@ impl<const HAS_NORMALS: bool> LineSums<HAS_NORMALS> {
         }
     }
 
-    /// The mean, if there is a weight.
+    /// The mean; `None` without a weight.
     #[inline(always)]
-    pub(super) fn mean(&self) -> Filtered {
-        let share = 1.0 / sum_of_all(self.weight);
+    pub(super) fn mean(&self) -> Option<Filtered> {
+        let weight = sum_of_all(self.weight);
+        let share = 1.0 / weight;
         let mean = |lanes: &[LineLanes; 3]| [0, 1, 2].map(|i| sum_of_all(lanes[i]) * share);
         let normal = if HAS_NORMALS { mean(&self.normal) } else { [0.0, 0.0, 1.0] };
-        Filtered { color: mean(&self.color), normal }
+        (weight > 0.0).then(|| Filtered { color: mean(&self.color), normal })
     }
 }
 

@@ -1,7 +1,7 @@
 //! The mean of all texels of an ellipse, in one pass over the rows that it takes.
 
 use super::gaussian::gaussian;
-use super::sums::PairSums;
+use super::sums::WideSums;
 use crate::filter::texel_set::lane_columns;
 use crate::filter::{Ellipse, Filtered, Footprint, MAX_TEXELS, isotropic, level_within_budget};
 use crate::settings::{Formulas, Settings};
@@ -85,7 +85,7 @@ fn scan<const HAS_NORMALS: bool, const IS_WIDE: bool>(
     if !(half_width.max(half_height) < 1e6 && f > 0.0) {
         return (None, 0);
     }
-    let mut sums = PairSums::<HAS_NORMALS>::default();
+    let mut sums = WideSums::<HAS_NORMALS>::default();
     // Rows of equal length, so that no branch depends on a row, and two rows at a time: what lies outside weighs nothing.
     let num = (half_width * 0.25) as i32 + 1;
     let limit = LineLanes::splat(cut * cut);
@@ -106,7 +106,7 @@ fn scan<const HAS_NORMALS: bool, const IS_WIDE: bool>(
                 let u = u + (8 * i) as f32;
                 let r2 = ((u * a + linear) * u + constant).fast_max(LineLanes::ZERO);
                 let weight = gaussian::<IS_WIDE>(r2.fast_min(limit)) & r2.simd_le(limit);
-                sums.add(level, runs.map(|run| run + 8 * (i - first) as usize), weight);
+                sums.add_runs(level, runs.map(|run| run + 8 * (i - first) as usize), weight);
             }
         }
     }
