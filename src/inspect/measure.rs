@@ -5,7 +5,7 @@ use super::ground::Quad;
 use super::sets::Sets;
 use crate::error::Result;
 use crate::filter::horizon::{Patches, picture_bins};
-use crate::filter::{Ellipse, FarField, Footprint, PixelFootprints, isotropic, level_within_budget, parallax};
+use crate::filter::{Ellipse, FarField, Footprint, PixelFootprints, ewa, isotropic, level_within_budget, parallax};
 use crate::geometry;
 use crate::raster::{self, QuadPair};
 use crate::relief::HeightField;
@@ -213,7 +213,8 @@ impl Probe<'_> {
         let level = match settings.filter {
             Filter::Nearest | Filter::Bilinear | Filter::Truth => 0.0,
             Filter::Trilinear => level_of_size(isotropic::longest_side(surface, &self.footprint(quad))).min(last),
-            Filter::Ewa | Filter::Visible => level_within_budget(surface, &self.footprint(quad), settings).0 as f32,
+            Filter::Ewa => ewa::level(surface, &self.footprint(quad), settings) as f32,
+            Filter::Visible => level_within_budget(surface, &self.footprint(quad), settings).0 as f32,
             Filter::Parallax => {
                 let footprint = quad.footprint((Derivatives::Flat, Formulas::Meant));
                 level_of_size(parallax::texel_size(surface, &footprint, settings.samples)).min(last)

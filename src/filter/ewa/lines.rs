@@ -102,13 +102,19 @@ impl Lines {
         }
     }
 
+    /// The mip level that a pixel's texels are of.
+    #[must_use]
+    pub fn level(&self, lane: usize) -> usize {
+        self.level.as_array()[lane] as usize
+    }
+
     /// The mean of a pixel, and how many texels were read. Only surfaces that have normals may be asked for them.
     #[must_use]
     #[inline(always)]
     pub fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64) {
         let is_turned = self.is_turned.as_array()[lane] != 0;
         let levels = if is_turned { &surface.transposed } else { &surface.levels };
-        let level = &levels[self.level.as_array()[lane] as usize];
+        let level = &levels[self.level(lane)];
         let at = |lanes: &PixelLanes| lanes.as_array()[lane];
         let [y0, slope, start, width] = [&self.place[1], &self.slope, &self.start, &self.width].map(at);
         let inverse_width = LineLanes::splat(1.0 / width);

@@ -24,6 +24,16 @@ pub fn takes_every_texel(settings: &Settings) -> bool {
     settings.every_texel || settings.texel_budget == 0 || settings.formulas == Formulas::Printed
 }
 
+/// The mip level whose texels make up a pixel in frames.
+#[must_use]
+pub fn level(surface: &Surface, footprint: &Footprint, settings: &Settings) -> usize {
+    if takes_every_texel(settings) {
+        whole::choose_level(surface, footprint, settings).0
+    } else {
+        Lines::new(surface, &PixelFootprints::splat(footprint, [0.0; 2]), settings).level(0)
+    }
+}
+
 /// The mean of one pixel, as frames show it.
 #[must_use]
 pub fn shown(surface: &Surface, footprint: &Footprint, settings: &Settings) -> Filtered {

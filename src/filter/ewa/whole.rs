@@ -38,7 +38,7 @@ pub fn mean(surface: &Surface, footprint: &Footprint, settings: &Settings, with_
 }
 
 /// The level and the ellipse in its texels.
-fn choose_level(surface: &Surface, footprint: &Footprint, settings: &Settings) -> (usize, Ellipse) {
+pub(super) fn choose_level(surface: &Surface, footprint: &Footprint, settings: &Settings) -> (usize, Ellipse) {
     let Settings { formulas, max_anisotropy, texel_budget, .. } = *settings;
     if texel_budget == 0 || formulas == Formulas::Printed {
         return level_within_budget(surface, footprint, settings);
