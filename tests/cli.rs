@@ -390,26 +390,14 @@ fn interrupt(folder: &Folder, num: u32, end: impl Fn(&mut std::process::Child)) 
     }
 }
 
-/// Kills at so many moments, then checks that the next run removes what the killed ones left.
+/// The next run removes what the killed ones left.
 #[cfg(unix)]
-fn kill(num: u32) {
+#[test]
+fn program_killed_at_100_moments_leaves_a_whole_image() {
     let folder = Folder::new();
-    interrupt(&folder, num, |child| child.kill().unwrap());
+    interrupt(&folder, 100, |child| child.kill().unwrap());
     folder.succeeds("quad.obj --size 8x8 -q -o out.png");
     assert_eq!(names(&folder), ["out.png", "quad.obj"]);
-}
-
-#[cfg(unix)]
-#[test]
-fn killed_program_leaves_a_whole_image() {
-    kill(20);
-}
-
-#[cfg(unix)]
-#[test]
-#[ignore = "takes longer: cargo test --test cli -- --ignored"]
-fn program_killed_at_100_moments_leaves_a_whole_image() {
-    kill(100);
 }
 
 #[cfg(unix)]
