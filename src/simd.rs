@@ -129,12 +129,10 @@ fn pick_eight(words: [u32x8; 2], numbers: i32x8) -> u32x8 {
 /// Whether [`pick`] is a few instructions.
 pub const HAS_SHUFFLE: bool = cfg!(target_feature = "avx2");
 
-/// Of the sixteen words from `start` on, those with the given numbers, 0 to 15.
+/// Of sixteen words, those with the given numbers, 0 to 15.
 #[must_use]
 #[inline(always)]
-pub fn pick(words: &[u32], start: usize, numbers: u32x16) -> u32x16 {
-    let run: &[u32; 16] = words[start..start + 16].try_into().expect("a slice of sixteen");
-    let run = u32x16::new(*run);
+pub fn pick(run: u32x16, numbers: u32x16) -> u32x16 {
     if cfg!(target_feature = "avx512f") {
         run.shuffle(numbers)
     } else {

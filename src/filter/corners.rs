@@ -1,13 +1,13 @@
 //! The two by two texels of a level around each of eight places.
 //!
-//! Neighbouring pixels look at neighbouring texels. So rows are read once for all places near one of them, sixteen words of
-//! each, and every place picks its own by a shuffle; then those near the next place that is left, to the same bits.
+//! Neighbouring pixels look at neighbouring texels. So a row is read once for all places near one of them, sixteen words of
+//! it, and every place picks its own by a shuffle. Where there is none, places are read one by one, to the same bits.
 
 use crate::simd::{self, i32x8, join_words, u32x8, u32x16};
 use crate::texture::Level;
 
 /// One plane's words at eight places: the eight texels to the left of each, then the eight to the right.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Corners {
     pub(super) above: u32x16,
     pub(super) below: u32x16,
@@ -44,28 +44,33 @@ fn picked(level: &Level, first: [i32; 2], columns: u32x8, rows: u32x8) -> [Corne
     let numbers = join_words([columns, columns + 1]);
     let mut needed = (u32x8::splat(3) << rows).to_array().into_iter().fold(0, |all, bits| all | bits);
     let rows = join_words([rows, rows]);
-    let (start, stride) = (level.run_start(first[0]), level.stride());
-    let mut corners = [Corners { above: u32x16::ZERO, below: u32x16::ZERO }; 2];
+    let start = level.run_start(first[0]);
+    let mut corners = [Corners::default(); 2];
     while needed != 0 {
         let row = needed.trailing_zeros();
         needed &= needed - 1;
         let is_above = rows.simd_eq(u32x16::splat(row));
         let is_below = rows.simd_eq(u32x16::splat(row.wrapping_sub(1)));
         let start = level.row_start(first[1] + row as i32) + start;
-        for (plane, corners) in corners.iter_mut().enumerate() {
-            let words = simd::pick(level.words(), start + plane * stride, numbers);
-            corners.above = is_above.bitselect(words, corners.above);
-            corners.below = is_below.bitselect(words, corners.below);
-        }
+        take(level, start, numbers, [is_above, is_below], &mut corners);
     }
     corners
+}
+
+/// Of a row's words from `start` on, those with the given numbers, for the places whose row, or whose next row, it is.
+#[inline(always)]
+fn take(level: &Level, start: usize, numbers: u32x16, [is_above, is_below]: [u32x16; 2], corners: &mut [Corners; 2]) {
+    for (plane, corners) in corners.iter_mut().enumerate() {
+        let words = simd::pick(Level::long_run(level.words(), start + plane * level.stride()), numbers);
+        corners.above = is_above.bitselect(words, corners.above);
+        corners.below = is_below.bitselect(words, corners.below);
+    }
 }
 
 /// Places of a row pick from columns of their own, such as those of pixels that lie along a slanted footprint.
 #[inline(never)]
 fn row_by_row(level: &Level, x: i32x8, y: i32x8) -> [Corners; 2] {
-    let stride = level.stride();
-    let mut corners = [Corners { above: u32x16::ZERO, below: u32x16::ZERO }; 2];
+    let mut corners = [Corners::default(); 2];
     // Bits of the places whose row, and whose next row, has not been read.
     let mut left = [u8::MAX; 2];
     while left != [0; 2] {
@@ -79,11 +84,7 @@ fn row_by_row(level: &Level, x: i32x8, y: i32x8) -> [Corners; 2] {
         let numbers = join_words([columns, columns + 1]);
         let [is_above, is_below] = of_row.map(|places| join_words([simd::bits(places); 2]));
         let start = level.start_at(first, row);
-        for (plane, corners) in corners.iter_mut().enumerate() {
-            let words = simd::pick(level.words(), start + plane * stride, numbers);
-            corners.above = is_above.bitselect(words, corners.above);
-            corners.below = is_below.bitselect(words, corners.below);
-        }
+        take(level, start, numbers, [is_above, is_below], &mut corners);
         left = [left[0] & !of_row[0], left[1] & !of_row[1]];
     }
     corners

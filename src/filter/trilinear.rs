@@ -1,7 +1,6 @@
 //! Trilinear look-ups of eight pixels at once, to the bits of [`isotropic::trilinear`](super::isotropic::trilinear).
 //!
-//! Neighbouring texels of a row lie next to each other, so a pixel's two by two texels of a level are two short loads a
-//! plane; levels and places may differ from pixel to pixel. Lanes are pixels.
+//! Levels and places may differ from pixel to pixel. Lanes are pixels.
 
 use super::Differences;
 use super::corners::{Corners, corners};

@@ -2,9 +2,9 @@
 //! average.
 
 use super::quads::{Ground, QuadShader};
-use super::queue::{AT_ONCE, Group, Queue};
+use super::queue::Queue;
 use crate::filter::ewa::{self, Lines, takes_every_texel};
-use crate::filter::{Differences, Filtered, PixelFootprints, bounded_place, trilinear};
+use crate::filter::{Filtered, PixelFootprints, bounded_place, trilinear};
 use crate::raster::{QuadBlock, QuadPair};
 use crate::settings::Lighting;
 use crate::simd::PixelLanes;
@@ -18,11 +18,22 @@ type Colors = Vec<[PixelLanes; 3]>;
 impl QuadShader<'_> {
     /// Appends the colours of a block's pairs by the trilinear filter, unlit.
     pub(super) fn trilinear(&self, ground: &Ground, block: &QuadBlock, colors: &mut Colors) {
-        let group = |place: [PixelLanes; 2], differences: &Differences| {
-            let [u, v] = bounded_place(place);
-            [u, v, trilinear::longest_side(ground.surface, differences)]
-        };
-        self.lined_up(ground, block, colors, group, |groups, found| trilinear::colors(ground.surface, groups, found));
+        let (first, mut index) = (colors.len(), 0);
+        let mut queue = Queue::new();
+        colors.resize(first + block.num_pairs(), [PixelLanes::ZERO; 3]);
+        while index < block.num_pairs() || !queue.is_empty() {
+            while index < block.num_pairs() && !queue.is_full() {
+                let pair = block.pair(index);
+                let (place, differences) = self.hits(ground, &pair);
+                let [u, v] = bounded_place(place);
+                queue.push(&pair, index, &[u, v, trilinear::longest_side(ground.surface, &differences)]);
+                index += 1;
+            }
+            queue.look_up(&mut colors[first..], |groups, found| {
+                trilinear::colors(ground.surface, groups, found);
+                found.iter_mut().for_each(|found| *found = ground.tinted(found));
+            });
+        }
     }
 
     /// Appends the colours of a block's pairs by the elliptical weighted average.
@@ -94,33 +105,6 @@ impl QuadShader<'_> {
             set(lane, mean.color);
         }
         ground.tinted(&colors.map(PixelLanes::new))
-    }
-
-    /// Appends the colours that `look_up` finds for groups of what `group` makes of a pair's hits.
-    #[inline(always)]
-    fn lined_up<const N: usize>(
-        &self,
-        ground: &Ground,
-        block: &QuadBlock,
-        colors: &mut Colors,
-        group: impl Fn([PixelLanes; 2], &Differences) -> Group<N>,
-        mut look_up: impl FnMut(&[Group<N>], &mut [[PixelLanes; 3]; AT_ONCE]),
-    ) {
-        let (first, mut index) = (colors.len(), 0);
-        let mut queue = Queue::new();
-        colors.resize(first + block.num_pairs(), [PixelLanes::ZERO; 3]);
-        while index < block.num_pairs() || !queue.is_empty() {
-            while index < block.num_pairs() && !queue.is_full() {
-                let pair = block.pair(index);
-                let (place, differences) = self.hits(ground, &pair);
-                queue.push(&pair, index, &group(place, &differences));
-                index += 1;
-            }
-            queue.look_up(&mut colors[first..], |groups, found| {
-                look_up(groups, found);
-                found.iter_mut().for_each(|found| *found = ground.tinted(found));
-            });
-        }
     }
 }
 

@@ -7,23 +7,23 @@ use crate::raster::QuadPair;
 use crate::simd::PixelLanes;
 
 /// Most groups that are looked up at once.
-pub(super) const AT_ONCE: usize = 8;
+const AT_ONCE: usize = 8;
 
-/// What the look-ups need to know of eight pixels: `N` numbers of each.
-pub(super) type Group<const N: usize> = [PixelLanes; N];
+/// What the look-ups need to know of eight pixels: u, v and the footprint's size.
+type Group = [PixelLanes; 3];
 
 /// The pixels, group after group.
-pub(super) struct Queue<const N: usize> {
-    groups: [Group<N>; AT_ONCE + 1],
+pub(super) struct Queue {
+    groups: [Group; AT_ONCE + 1],
     /// Of each pixel, the pair of the block times 8 plus the lane.
     pixels: [[u32; 8]; AT_ONCE + 1],
     num: usize,
 }
 
-impl<const N: usize> Queue<N> {
+impl Queue {
     /// An empty queue.
     pub(super) fn new() -> Self {
-        Self { groups: [[PixelLanes::ZERO; N]; AT_ONCE + 1], pixels: Default::default(), num: 0 }
+        Self { groups: [[PixelLanes::ZERO; 3]; AT_ONCE + 1], pixels: Default::default(), num: 0 }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -37,7 +37,7 @@ impl<const N: usize> Queue<N> {
 
     /// Lines up the pixels of a pair that are seen.
     #[inline(always)]
-    pub(super) fn push(&mut self, pair: &QuadPair, index: usize, group: &Group<N>) {
+    pub(super) fn push(&mut self, pair: &QuadPair, index: usize, group: &Group) {
         let numbers = std::array::from_fn(|lane| (8 * index + lane) as u32);
         if self.num.is_multiple_of(8) && pair.is_whole() {
             (self.groups[self.num / 8], self.pixels[self.num / 8]) = (*group, numbers);
@@ -59,7 +59,7 @@ impl<const N: usize> Queue<N> {
     pub(super) fn look_up(
         &mut self,
         colors: &mut [[PixelLanes; 3]],
-        look_up: impl FnOnce(&[Group<N>], &mut [[PixelLanes; 3]; AT_ONCE]),
+        look_up: impl FnOnce(&[Group], &mut [[PixelLanes; 3]; AT_ONCE]),
     ) {
         let num_groups = (self.num / 8).max(1);
         if self.num < 8 {

@@ -62,8 +62,8 @@ impl Lines {
         // Two or three rows of a line's columns, and so many square texels of variance along it, are within the budget.
         let most = (settings.texel_budget.max(16) as f32).min(4096.0) * (0.4 * 0.5 / HALF_LENGTH);
         let along = conics.long * VARIANCE + 0.25;
-        let for_width = super::power_of_4((conics.short * (4.0 * VARIANCE) + 1.0) * MOST_BLUR);
-        let for_budget = super::power_of_4(along * (4.0 / (most * most)));
+        let for_width = power_of_4((conics.short * (4.0 * VARIANCE) + 1.0) * MOST_BLUR);
+        let for_budget = power_of_4(along * (4.0 / (most * most)));
         let last = i32x8::splat(surface.levels.len() as i32 - 1);
         let level = for_width.max(for_budget).max(i32x8::ZERO).min(last);
         // Square texels of the level in one of the base level.
@@ -82,7 +82,7 @@ impl Lines {
         let reach = (variance / (slope * slope + 1.0)).sqrt() * HALF_LENGTH;
         // Rows meet a slanted line aslant.
         let width = (across * (slope * slope + 1.0) * 6.0).fast_max(PixelLanes::ONE).sqrt();
-        let texels = super::texels_a_repeat(surface, level);
+        let texels = texels_a_repeat(surface, level);
         // So far away that an f32 tells no texels apart any more, any will do.
         let bounded =
             |place: PixelLanes| place.fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST));
@@ -183,3 +183,22 @@ fn columns() -> LineLanes {
 }
 
 const _: () = assert!(COLUMNS <= APRON, "a run of columns is one load");
+
+/// The greatest `n` with `4^n` up to a size above 0.
+fn power_of_4(size: PixelLanes) -> i32x8 {
+    // The exponent of a float is the whole part of its logarithm.
+    ((mask(size) >> 23_i32) - 127) >> 1_i32
+}
+
+/// Texels a repeat of a level for each lane.
+fn texels_a_repeat(surface: &Surface, levels: i32x8) -> [PixelLanes; 2] {
+    let level = levels.as_array()[0];
+    if levels.simd_eq(i32x8::splat(level)).all() {
+        return surface.texels_per_repeat(level as usize).map(PixelLanes::splat);
+    }
+    let mut texels = [[0.0; 8]; 2];
+    for (lane, &level) in levels.as_array().iter().enumerate() {
+        [texels[0][lane], texels[1][lane]] = surface.texels_per_repeat(level as usize);
+    }
+    texels.map(PixelLanes::new)
+}

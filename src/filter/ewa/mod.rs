@@ -14,7 +14,7 @@ pub use whole::mean;
 use super::texel_set::{RowQuadric, lane_columns};
 use super::{Ellipse, Filtered, Footprint, PixelFootprints, TexelSet};
 use crate::settings::{Formulas, Settings};
-use crate::simd::{PixelLanes, TexelLanes, exp_negative, i32x8, mask};
+use crate::simd::{TexelLanes, exp_negative};
 use crate::texture::{Level, Surface};
 use sums::Sums;
 
@@ -67,23 +67,4 @@ pub fn average(level: &Level, set: &TexelSet, ellipse: &Ellipse, center: [f32; 2
 /// All bits of the lanes whose bit is set.
 fn lane_mask(bits: u8) -> TexelLanes {
     TexelLanes::new(std::array::from_fn(|lane| f32::from_bits(if bits >> lane & 1 == 1 { u32::MAX } else { 0 })))
-}
-
-/// The greatest `n` with `4^n` up to a size above 0.
-fn power_of_4(size: PixelLanes) -> i32x8 {
-    // The exponent of a float is the whole part of its logarithm.
-    ((mask(size) >> 23_i32) - 127) >> 1_i32
-}
-
-/// Texels a repeat of a level for each lane.
-fn texels_a_repeat(surface: &Surface, levels: i32x8) -> [PixelLanes; 2] {
-    let level = levels.as_array()[0];
-    if levels.simd_eq(i32x8::splat(level)).all() {
-        return surface.texels_per_repeat(level as usize).map(PixelLanes::splat);
-    }
-    let mut texels = [[0.0; 8]; 2];
-    for (lane, &level) in levels.as_array().iter().enumerate() {
-        [texels[0][lane], texels[1][lane]] = surface.texels_per_repeat(level as usize);
-    }
-    texels.map(PixelLanes::new)
 }
