@@ -15,7 +15,7 @@ fn cases() -> [(&'static str, Scene); 3] {
 }
 
 fn flat(block: &QuadBlock, colors: &mut Vec<[PixelLanes; 3]>) {
-    colors.extend(block.pairs().map(|pair| [pair.uv[0], pair.uv[1], pair.view[2]]));
+    colors.extend(block.pairs().map(|pair| [pair.uv[0], pair.uv[1], pair.view()[2]]));
 }
 
 fn setup(criterion: &mut Criterion) {

@@ -290,7 +290,7 @@ fn soup(num: u32, settings: &Settings) -> Scene {
 
 fn shade(pair: &QuadPair) -> [PixelLanes; 3] {
     let tint = PixelLanes::splat(pair.material as f32 + 0.5);
-    [pair.uv[0], pair.uv[1] * tint, pair.view[2]]
+    [pair.uv[0], pair.uv[1] * tint, pair.view()[2]]
 }
 
 fn drawn(scene: &Scene, settings: &Settings) -> (Frame, RasterStats) {
@@ -425,7 +425,7 @@ fn attributes_are_perspective_correct() {
             // The floor's point under the pixel; its texture frame is (x, -z) and the normal up.
             let (expected, w) = ([x / y, 1.0 / y, 1.0], 1.0 / y);
             let found = [pair.uv[0], pair.uv[1]].map(|lanes| f64::from(lanes.to_array()[lane]));
-            let view = pair.view.map(|lanes| f64::from(lanes.to_array()[lane]));
+            let view = pair.view().map(|lanes| f64::from(lanes.to_array()[lane]));
             let error = [
                 found[0] - expected[0],
                 found[1] - expected[1],

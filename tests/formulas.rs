@@ -60,7 +60,7 @@ fn quad_derivatives_are_differences_of_coordinates_to_the_bit() {
             let mut quad = || [0, 1].map(|i| 2 * (random.bits() % [32, 24][i]) as i32);
             let origin = [quad(), quad()];
             let pair = QuadPair::new(0, origin, [1; 8], [&planes; 2]);
-            let reach = displacement(&pair.view, 0.1);
+            let reach = displacement(&pair.view(), 0.1);
             let depth = march(&field, &pair.uv, &reach);
             for which in ALL {
                 let found = differences(&pair.uv, &[reach[0] * depth, reach[1] * depth], which);

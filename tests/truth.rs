@@ -107,7 +107,7 @@ fn sets_of_texels_are_the_papers_on_every_footprint_of_a_frame() {
         let origin = [[quad % 24 * 2, quad / 24 * 2]; 2];
         for planes in &planes {
             let pair = QuadPair::new(0, origin, [1; 8], [planes; 2]);
-            let reach = displacement(&pair.view, surface.relief_depth);
+            let reach = displacement(&pair.view(), surface.relief_depth);
             let depth = march(&field, &pair.uv, &reach);
             let offset = reach.map(|lanes| lanes * depth);
             let place = [pair.uv[0] + offset[0], pair.uv[1] + offset[1]];

@@ -60,8 +60,11 @@ fn picked(level: &Level, first: [i32; 2], columns: u32x8, rows: u32x8) -> [Corne
 /// Of a row's words from `start` on, those with the given numbers, for the places whose row, or whose next row, it is.
 #[inline(always)]
 fn take(level: &Level, start: usize, numbers: u32x16, [is_above, is_below]: [u32x16; 2], corners: &mut [Corners; 2]) {
+    let stride = level.stride();
+    // One check for both planes.
+    let words = &level.words()[start..][..stride + 16];
     for (plane, corners) in corners.iter_mut().enumerate() {
-        let words = simd::pick(Level::long_run(level.words(), start + plane * level.stride()), numbers);
+        let words = simd::pick(Level::long_run(words, plane * stride), numbers);
         corners.above = is_above.bitselect(words, corners.above);
         corners.below = is_below.bitselect(words, corners.below);
     }

@@ -26,7 +26,7 @@ use crate::simd::{PixelLanes, permute};
 /// as well as a longer one does.
 const MAX_LENGTH: f32 = 16.0;
 
-/// The derivatives of the texture coordinates of eight pixels, in repeats a pixel.
+/// The derivatives of the texture coordinates of eight pixels, in repeats a pixel; they may be infinite or NaN.
 #[derive(Clone, Copy, Debug)]
 pub struct Differences {
     /// `(du/dx, dv/dx)`.
@@ -53,15 +53,20 @@ pub fn bounded_place(place: [PixelLanes; 2]) -> [PixelLanes; 2] {
     place.map(|c| c.abs().simd_le(PixelLanes::splat(1e6)).select(c, PixelLanes::ZERO))
 }
 
-/// A derivative of eight pixels, shortened where it is longer than 16 repeats.
+/// A derivative of eight pixels, shortened where it is longer than 16 repeats, and 0 for what is not a number.
 #[inline]
 pub(super) fn shortened([u, v]: [PixelLanes; 2]) -> [PixelLanes; 2] {
+    let is_short = |c: PixelLanes| c.abs().simd_le(PixelLanes::splat(MAX_LENGTH));
+    if (is_short(u) & is_short(v)).all() { [u, v] } else { shortened_lanes([u, v]) }
+}
+
+/// Few are, so that what it takes is worth a branch.
+#[cold]
+#[inline(never)]
+fn shortened_lanes(derivative: [PixelLanes; 2]) -> [PixelLanes; 2] {
+    let [u, v] = derivative.map(finite);
     let longest = u.abs().fast_max(v.abs());
     let is_long = longest.simd_gt(PixelLanes::splat(MAX_LENGTH));
-    // Few are, so that the division is worth a branch.
-    if !is_long.any() {
-        return [u, v];
-    }
     let scale = is_long.select(PixelLanes::splat(MAX_LENGTH) / longest, PixelLanes::ONE);
     [u * scale, v * scale]
 }
@@ -80,7 +85,7 @@ pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Deriv
         // The quad's pixels at the high and the low ends of each lane's row and column.
         let dx = |c: PixelLanes| permute(c, [1, 1, 3, 3, 5, 5, 7, 7]) - permute(c, [0, 0, 2, 2, 4, 4, 6, 6]);
         let dy = |c: PixelLanes| permute(c, [2, 3, 2, 3, 6, 7, 6, 7]) - permute(c, [0, 1, 0, 1, 4, 5, 4, 5]);
-        return Differences { dx: [finite(dx(u)), finite(dx(v))], dy: [finite(dy(u)), finite(dy(v))] };
+        return Differences { dx: [dx(u), dx(v)], dy: [dy(u), dy(v)] };
     }
     letter_by_letter(uv, offset, which)
 }
@@ -97,7 +102,7 @@ fn letter_by_letter(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Deri
         let [_, _, dudy, dvdy] = at_pixel(at(column), at(column), at(column + 2), which);
         [dudx, dvdx, dudy, dvdy].into_iter().zip(&mut result).for_each(|(d, lanes)| lanes[lane] = d);
     }
-    let [dudx, dvdx, dudy, dvdy] = result.map(|lanes| finite(PixelLanes::new(lanes)));
+    let [dudx, dvdx, dudy, dvdy] = result.map(PixelLanes::new);
     Differences { dx: [dudx, dvdx], dy: [dudy, dvdy] }
 }
 
@@ -116,6 +121,7 @@ pub fn differences_for(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], settings:
     let flat = differences(uv, offset, (Derivatives::Flat, Formulas::Meant));
     let without_jump = |displaced: [PixelLanes; 2], flat: [PixelLanes; 2]| {
         let squared = |[u, v]: [PixelLanes; 2]| u * u + v * v;
+        let [displaced, flat] = [displaced, flat].map(|derivative| derivative.map(finite));
         let is_jump = squared(displaced).simd_gt(squared(flat) * (settings.max_stretch * settings.max_stretch));
         [0, 1].map(|axis| is_jump.select(flat[axis], displaced[axis]))
     };
@@ -161,11 +167,12 @@ pub fn at_pixel(here: Corner, right: Corner, below: Corner, which: (Derivatives,
 }
 
 impl Differences {
-    /// The footprint of one lane around `center`; derivatives beyond 16 repeats are shortened.
+    /// The footprint of one lane around `center`; derivatives beyond 16 repeats are shortened, and 0 for what is not a number.
     #[must_use]
     pub fn footprint(&self, center: &[PixelLanes; 2], lane: usize) -> Footprint {
         let at = |lanes: &[PixelLanes; 2]| lanes.map(|l| l.as_array()[lane]);
-        let bounded = |[u, v]: [f32; 2]| {
+        let bounded = |derivative: [f32; 2]| {
+            let [u, v] = derivative.map(|c| if c.is_finite() { c } else { 0.0 });
             let longest = u.abs().max(v.abs());
             let scale = if longest > MAX_LENGTH { MAX_LENGTH / longest } else { 1.0 };
             [u * scale, v * scale]

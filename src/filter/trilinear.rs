@@ -12,7 +12,7 @@ use crate::texture::Surface;
 const FARTHEST: f32 = (1 << 30) as f32;
 
 /// Eight places in a level's texels.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Spot {
     level: usize,
     /// The texel to the upper left.
@@ -21,32 +21,42 @@ struct Spot {
     part: [PixelLanes; 2],
 }
 
+/// Eight places in the two levels next to their size, and the share of the coarser one.
+struct Spots {
+    /// `None` where pixels are on different levels.
+    levels: Option<[Spot; 2]>,
+    blend: PixelLanes,
+}
+
 /// The mean colours of groups of eight pixels: their places (u and v in repeats, within 1e6) and the lengths of their
-/// footprints in base texels.
-///
-/// Each step is done for all groups before the next: one group's steps wait for each other, those of several do not.
-pub fn colors<const N: usize>(surface: &Surface, groups: &[[PixelLanes; 3]], colors: &mut [[PixelLanes; 3]; N]) {
-    let last = surface.levels.len() - 1;
-    let mut spots = [[Spot::default(); 2]; N];
-    let mut blends = [PixelLanes::ZERO; N];
-    for ((&[u, v, size], spots), blend) in groups.iter().zip(&mut spots).zip(&mut blends) {
-        let levels;
-        (levels, *blend) = levels_of_sizes(size, last);
-        let level = levels.as_array()[0] as usize;
-        if levels.simd_eq(i32x8::splat(level as i32)).all() {
-            *spots = [level, last.min(level + 1)].map(|level| Spot::new(surface, level, [u, v]));
-        } else {
-            spots[0].level = usize::MAX;
-        }
-    }
-    for (((group, spots), blend), color) in groups.iter().zip(&spots).zip(blends).zip(colors) {
-        *color = if spots[0].level == usize::MAX {
-            on_several_levels(surface, group)
-        } else {
-            let fine = spots[0].color(surface);
-            let is_blended = blend.simd_gt(PixelLanes::ZERO).any();
-            if is_blended { mixed(&fine, &spots[1].color(surface), blend) } else { fine }
+/// footprints in base texels. `sink` gets each group's index and colours.
+#[inline(always)]
+pub fn colors(surface: &Surface, groups: &[[PixelLanes; 3]], mut sink: impl FnMut(usize, [PixelLanes; 3])) {
+    let Some(first) = groups.first() else { return };
+    // The next group's places are found before this one's texels are read: neither waits for the other.
+    let mut next = Spots::new(surface, first);
+    for (index, group) in groups.iter().enumerate() {
+        let spots = next;
+        next = Spots::new(surface, groups.get(index + 1).unwrap_or(group));
+        let is_blended = spots.blend.simd_gt(PixelLanes::ZERO).any();
+        let color = match spots.levels {
+            None => on_several_levels(surface, group),
+            Some([fine, coarse]) if is_blended => mixed(&fine.color(surface), &coarse.color(surface), spots.blend),
+            Some([fine, _]) => fine.color(surface),
         };
+        sink(index, color);
+    }
+}
+
+impl Spots {
+    #[inline(always)]
+    fn new(surface: &Surface, &[u, v, size]: &[PixelLanes; 3]) -> Self {
+        let last = surface.levels.len() - 1;
+        let (levels, blend) = levels_of_sizes(size, last);
+        let level = levels.as_array()[0] as usize;
+        let is_same = levels.simd_eq(i32x8::splat(level as i32)).all();
+        let at = |level: usize| Spot::new(surface, level, [u, v]);
+        Self { levels: is_same.then(|| [at(level), at(last.min(level + 1))]), blend }
     }
 }
 

@@ -150,7 +150,7 @@ impl Probe<'_> {
             // How many triangles there are is counted, not measured.
             (_, View::Coverage) => [None; 8],
             (Some(ground), _) => {
-                let quads = Quad::lanes(&pair.uv, &pair.view, ground.surface, ground.field.as_ref());
+                let quads = Quad::lanes(&pair.uv, &pair.view(), ground.surface, ground.field.as_ref());
                 self.each_covered(pair, |lane| self.value(pair, ground, &quads[lane]))
             }
             (None, View::Depth) => self.each_covered(pair, |lane| [self.distance(pair, lane), 0.0, 0.0]),
@@ -181,7 +181,7 @@ impl Probe<'_> {
             }
             View::Depth => {
                 // The ray sinks by gamma repeats on its way from the eye, and on by the depth of the hit.
-                let [.., gamma] = pair.view.map(|lanes| lanes.as_array()[quad.lane].abs());
+                let [.., gamma] = pair.view().map(|lanes| lanes.as_array()[quad.lane].abs());
                 let sunk = ground.field.as_ref().map_or(0.0, |_| surface.relief_depth * quad.ray.hit_depth);
                 [self.distance(pair, quad.lane) * (1.0 + sunk / gamma.max(f32::MIN_POSITIVE)), 0.0, 0.0]
             }
@@ -250,7 +250,7 @@ fn world(pair: &QuadPair, lane: usize, [x, y, z]: [f32; 3]) -> [f32; 3] {
     let Some(lit) = pair.lit() else { return [0.0; 3] };
     let at = |lanes: &[PixelLanes; 3]| Vec3::from(lanes.map(|lanes| lanes.as_array()[lane]));
     let normal = at(&lit.normal).normalize_or(Vec3::Z);
-    let normal = if pair.view[2].as_array()[lane] < 0.0 { -normal } else { normal };
+    let normal = if pair.view()[2].as_array()[lane] < 0.0 { -normal } else { normal };
     let [u, v] = [at(&lit.tangent_u), at(&lit.tangent_v)].map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
     (u * x + v * y + normal * z).normalize_or(normal).to_array()
 }

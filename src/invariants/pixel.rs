@@ -25,7 +25,7 @@ impl Pixel {
     #[must_use]
     pub fn new(center: [f32; 2], dx: [f32; 2], dy: [f32; 2], displacement: [f32; 2]) -> Self {
         let [center, dx, dy, displacement] = [center, dx, dy, displacement].map(|v| v.map(PixelLanes::splat));
-        let differences = Differences { dx: dx.map(finite), dy: dy.map(finite) };
+        let differences = Differences { dx, dy };
         let bounded = |d: PixelLanes| finite(d).to_array()[0].clamp(-MAX_SLOPE, MAX_SLOPE);
         Self { footprint: differences.footprint(&center, 0), displacement: displacement.map(bounded) }
     }

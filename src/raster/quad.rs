@@ -58,10 +58,10 @@ pub struct QuadPair<'a> {
     pub coverage: [u8; 8],
     /// The triangles of both quads.
     pub planes: [&'a AttributePlanes; 2],
+    /// The distance along the view at the pixel centres.
+    pub w: PixelLanes,
     /// Texture coordinates at the pixel centres, in repeats.
     pub uv: [PixelLanes; 2],
-    /// The ray from the eye in the texture frame at the pixel centres (see [`AttributePlanes::view`]).
-    pub view: [PixelLanes; 3],
 }
 
 impl AttributePlanes {
@@ -70,7 +70,7 @@ impl AttributePlanes {
     #[must_use]
     #[inline]
     pub fn at(&self, x: PixelLanes, y: PixelLanes) -> ([PixelLanes; 2], [PixelLanes; 3]) {
-        let at = Places { x, y, planes: [self, self] };
+        let at = Places::<true> { x, y, planes: [self, self] };
         let w = at.w();
         (at.attributes(w, |planes| &planes.uv), at.attributes(w, |planes| &planes.view))
     }
@@ -79,7 +79,8 @@ impl AttributePlanes {
     #[must_use]
     #[inline]
     pub fn lit_at(&self, x: PixelLanes, y: PixelLanes) -> Option<LitLanes> {
-        Places { x, y, planes: [self, self] }.lit()
+        let at = Places::<true> { x, y, planes: [self, self] };
+        at.lit(at.w())
     }
 }
 
@@ -89,10 +90,21 @@ impl<'a> QuadPair<'a> {
     #[inline(always)]
     pub fn new(material: usize, origin: [[i32; 2]; 2], coverage: [u8; 8], planes: [&'a AttributePlanes; 2]) -> Self {
         let [x, y] = centers(origin);
-        let at = Places { x, y, planes };
-        let w = at.w();
-        let (uv, view) = (at.attributes(w, |planes| &planes.uv), at.attributes(w, |planes| &planes.view));
-        Self { material, origin, coverage, planes, uv, view }
+        // As most are where triangles are large.
+        let (w, uv) = if std::ptr::eq(planes[0], planes[1]) {
+            Places::<true> { x, y, planes }.coordinates()
+        } else {
+            Places::<false> { x, y, planes }.coordinates()
+        };
+        Self { material, origin, coverage, planes, w, uv }
+    }
+
+    /// The ray from the eye in the texture frame at the pixel centres (see [`AttributePlanes::view`]).
+    #[must_use]
+    #[inline(always)]
+    pub fn view(&self) -> [PixelLanes; 3] {
+        let [x, y] = self.centers();
+        Places::<false> { x, y, planes: self.planes }.attributes(self.w, |planes| &planes.view)
     }
 
     /// The lanes whose pixels see the triangle, in order.
@@ -120,7 +132,7 @@ impl<'a> QuadPair<'a> {
     #[inline]
     pub fn lit(&self) -> Option<LitLanes> {
         let [x, y] = self.centers();
-        Places { x, y, planes: self.planes }.lit()
+        Places::<false> { x, y, planes: self.planes }.lit(self.w)
     }
 }
 
@@ -148,23 +160,29 @@ fn halves(a: f32, b: f32) -> PixelLanes {
     PixelLanes::new([a, a, a, a, b, b, b, b])
 }
 
-/// Eight places on the screen, four on each of two triangles.
-struct Places<'a> {
+/// Eight places on the screen, four on each of two triangles, which may be one.
+struct Places<'a, const IS_ONE: bool> {
     x: PixelLanes,
     y: PixelLanes,
     planes: [&'a AttributePlanes; 2],
 }
 
-impl Places<'_> {
+impl<const IS_ONE: bool> Places<'_, IS_ONE> {
     #[inline(always)]
-    fn value(&self, plane: impl Fn(&AttributePlanes) -> Plane) -> PixelLanes {
-        let [a, b] = self.planes.map(&plane);
-        halves(a[0], b[0]) * self.x + halves(a[1], b[1]) * self.y + halves(a[2], b[2])
+    fn coordinates(&self) -> (PixelLanes, [PixelLanes; 2]) {
+        let w = self.w();
+        (w, self.attributes(w, |planes| &planes.uv))
+    }
+
+    #[inline(always)]
+    fn value(&self, [a, b]: [Plane; 2]) -> PixelLanes {
+        let [c0, c1, c2] = [0, 1, 2].map(|i| if IS_ONE { PixelLanes::splat(a[i]) } else { halves(a[i], b[i]) });
+        c0 * self.x + c1 * self.y + c2
     }
 
     #[inline(always)]
     fn w(&self) -> PixelLanes {
-        PixelLanes::ONE / self.value(|planes| planes.inverse_w)
+        PixelLanes::ONE / self.value(self.planes.map(|planes| planes.inverse_w))
     }
 
     #[inline(always)]
@@ -173,19 +191,16 @@ impl Places<'_> {
         w: PixelLanes,
         planes: impl Fn(&AttributePlanes) -> &[Plane; N],
     ) -> [PixelLanes; N] {
-        std::array::from_fn(|i| self.value(|of| planes(of)[i]) * w)
+        let [a, b] = self.planes.map(planes);
+        std::array::from_fn(|i| self.value([a[i], b[i]]) * w)
     }
 
     #[inline]
-    fn lit(&self) -> Option<LitLanes> {
+    fn lit(&self, w: PixelLanes) -> Option<LitLanes> {
         let lit = [self.planes[0].lit.as_deref()?, self.planes[1].lit.as_deref()?];
-        let w = self.w();
         let vector = |planes: fn(&LitPlanes) -> &[Plane; 3]| {
             let [a, b] = lit.map(planes);
-            std::array::from_fn(|i| {
-                let [a, b] = [a[i], b[i]];
-                (halves(a[0], b[0]) * self.x + halves(a[1], b[1]) * self.y + halves(a[2], b[2])) * w
-            })
+            std::array::from_fn(|i| self.value([a[i], b[i]]) * w)
         };
         Some(LitLanes {
             position: vector(|lit| &lit.position),

@@ -29,10 +29,12 @@ impl QuadShader<'_> {
                 queue.push(&pair, index, &[u, v, trilinear::longest_side(ground.surface, &differences)]);
                 index += 1;
             }
-            queue.look_up(&mut colors[first..], |groups, found| {
-                trilinear::colors(ground.surface, groups, found);
-                found.iter_mut().for_each(|found| *found = ground.tinted(found));
+            let colors = &mut colors[first..];
+            queue.fill_up();
+            trilinear::colors(ground.surface, queue.groups(), |group, found| {
+                queue.hand_out(group, ground.tinted(&found), colors);
             });
+            queue.advance();
         }
     }
 

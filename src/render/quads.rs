@@ -198,7 +198,7 @@ impl<'a> QuadShader<'a> {
 impl Ground<'_> {
     /// How far the view rays move along the texture down to the deepest relief, in repeats.
     pub(super) fn reach(&self, pair: &QuadPair) -> [PixelLanes; 2] {
-        displacement(&pair.view, self.field.map_or(0.0, |_| self.surface.relief_depth))
+        displacement(&pair.view(), self.field.map_or(0.0, |_| self.surface.relief_depth))
     }
 }
 

@@ -38,51 +38,71 @@ impl Queue {
     /// Lines up the pixels of a pair that are seen.
     #[inline(always)]
     pub(super) fn push(&mut self, pair: &QuadPair, index: usize, group: &Group) {
-        let numbers = std::array::from_fn(|lane| (8 * index + lane) as u32);
         if self.num.is_multiple_of(8) && pair.is_whole() {
+            let numbers = std::array::from_fn(|lane| (8 * index + lane) as u32);
             (self.groups[self.num / 8], self.pixels[self.num / 8]) = (*group, numbers);
             self.num += 8;
-            return;
+        } else {
+            self.push_covered(pair.covered(), index, *group);
         }
-        for lane in pair.covered() {
+    }
+
+    #[inline(never)]
+    fn push_covered(&mut self, covered: impl Iterator<Item = usize>, index: usize, group: Group) {
+        for lane in covered {
             let to = &mut self.groups[self.num / 8];
-            for (to, from) in to.iter_mut().zip(group) {
+            for (to, from) in to.iter_mut().zip(&group) {
                 to.as_mut_array()[self.num % 8] = from.as_array()[lane];
             }
-            self.pixels[self.num / 8][self.num % 8] = numbers[lane];
+            self.pixels[self.num / 8][self.num % 8] = (8 * index + lane) as u32;
             self.num += 1;
         }
     }
 
-    /// Looks up the groups that are whole, or the last one, and moves what is left to the front.
-    #[inline(always)]
-    pub(super) fn look_up(
-        &mut self,
-        colors: &mut [[PixelLanes; 3]],
-        look_up: impl FnOnce(&[Group], &mut [[PixelLanes; 3]; AT_ONCE]),
-    ) {
-        let num_groups = (self.num / 8).max(1);
+    /// Takes pixels that are missing in a lone group for the first, where the others' texels are.
+    pub(super) fn fill_up(&mut self) {
         if self.num < 8 {
-            // What is missing is taken for the first, where the others' texels are.
             for lanes in &mut self.groups[0] {
                 let first = lanes.as_array()[0];
                 lanes.as_mut_array()[self.num..].fill(first);
             }
         }
-        let mut found = [[PixelLanes::ZERO; 3]; AT_ONCE];
-        look_up(&self.groups[..num_groups], &mut found);
-        for (group, (found, pixels)) in found.iter().zip(&self.pixels).enumerate().take(num_groups) {
+    }
+
+    /// The groups that are whole, or the last one.
+    pub(super) fn groups(&self) -> &[Group] {
+        &self.groups[..self.num_whole()]
+    }
+
+    /// Hands out what was found for one of [`Self::groups`] to the pairs of the block.
+    #[inline(always)]
+    pub(super) fn hand_out(&self, group: usize, found: [PixelLanes; 3], colors: &mut [[PixelLanes; 3]]) {
+        let pixels = &self.pixels[group];
+        if pixels[0].is_multiple_of(8) && pixels[7] == pixels[0] + 7 {
+            let color = &mut colors[pixels[0] as usize / 8];
+            (0..3).for_each(|c| color[c] = found[c]);
+        } else {
             let num = (self.num - 8 * group).min(8);
-            if num == 8 && pixels[0].is_multiple_of(8) && pixels[7] == pixels[0] + 7 {
-                colors[pixels[0] as usize / 8] = *found;
-                continue;
-            }
-            for (lane, pixel) in pixels.iter().enumerate().take(num) {
-                let color = &mut colors[*pixel as usize / 8];
-                (0..3).for_each(|c| color[c].as_mut_array()[*pixel as usize % 8] = found[c].as_array()[lane]);
-            }
+            scatter(&pixels[..num], &found, colors);
         }
+    }
+
+    /// Leaves out the groups that were handed out.
+    pub(super) fn advance(&mut self) {
+        let num_groups = self.num_whole();
         (self.groups[0], self.pixels[0]) = (self.groups[num_groups], self.pixels[num_groups]);
         self.num = self.num.saturating_sub(8 * num_groups);
+    }
+
+    fn num_whole(&self) -> usize {
+        (self.num / 8).max(1)
+    }
+}
+
+#[inline(never)]
+fn scatter(pixels: &[u32], found: &[PixelLanes; 3], colors: &mut [[PixelLanes; 3]]) {
+    for (lane, pixel) in pixels.iter().enumerate() {
+        let color = &mut colors[*pixel as usize / 8];
+        (0..3).for_each(|c| color[c].as_mut_array()[*pixel as usize % 8] = found[c].as_array()[lane]);
     }
 }
