@@ -28,7 +28,7 @@ fn frames(criterion: &mut Criterion) {
     ];
     for (name, settings) in cases {
         let mut renderer = Renderer::new(scene::builtin(), settings).expect("the settings are valid");
-        let mut frame = Frame::default();
+        let mut frame: Frame = Frame::default();
         group.bench_function(name, |b| b.iter(|| renderer.render_into(&mut frame, &|| 0.0)));
     }
     group.finish();

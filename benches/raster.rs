@@ -64,7 +64,7 @@ fn draw(criterion: &mut Criterion) {
             let settings = Settings { msaa, ..Settings::default() };
             let geometry = project(&scene, &settings);
             let mut rasterizer = Rasterizer::default();
-            let mut frame = Frame { width: 0, height: 0, pixels: vec![] };
+            let mut frame: Frame = Frame::default();
             group.bench_function(format!("{name}_msaa{msaa}"), |b| {
                 b.iter(|| rasterizer.draw(black_box(&geometry), (&scene, &settings), &flat, &|| 0.0, &mut frame));
             });

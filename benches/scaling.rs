@@ -27,7 +27,7 @@ fn settings(filter: Filter) -> Settings {
 fn time(scene: Scene, settings: Settings, num_threads: usize) -> f64 {
     let pool = ThreadPoolBuilder::new().num_threads(num_threads).build().expect("threads");
     let mut renderer = Renderer::new(scene, settings).expect("a valid scene");
-    let mut pixels = Frame::default();
+    let mut pixels: Frame = Frame::default();
     let frame = || {
         let start = Instant::now();
         pool.install(|| renderer.render_into(&mut pixels, &|| 0.0));

@@ -4,6 +4,7 @@
 //! For the same bytes on every machine: `a * b + c` and never `mul_add`, `1.0 / x` and never `recip`, sums of lanes in
 //! one fixed order ([`sum`]), minima and maxima by [`f32x8::fast_min`] and [`f32x8::fast_max`] on values that are not NaN.
 
+use wide::f32x4;
 pub use wide::{f32x8, f32x16, f64x8, i32x8, i32x16, u32x8, u32x16};
 
 /// Eight pixels: two 2x2 quads, lane `4 * quad + 2 * dy + dx`.
@@ -161,6 +162,20 @@ pub fn as_unsigned(words: i32x8) -> u32x8 {
     wide::bytemuck::cast(words)
 }
 
+/// The bits of sixteen lanes.
+#[must_use]
+#[inline(always)]
+pub fn words(lanes: f32x16) -> u32x16 {
+    wide::bytemuck::cast(lanes)
+}
+
+/// Sixteen lanes of those bits.
+#[must_use]
+#[inline(always)]
+pub fn from_words(words: u32x16) -> f32x16 {
+    wide::bytemuck::cast(words)
+}
+
 /// The lanes of a comparison, all bits or none, as a mask of whole numbers.
 #[must_use]
 pub fn mask(comparison: f32x8) -> i32x8 {
@@ -171,6 +186,14 @@ pub fn mask(comparison: f32x8) -> i32x8 {
 #[must_use]
 pub fn lanes(mask: i32x8) -> f32x8 {
     wide::bytemuck::cast(mask)
+}
+
+/// The four values of each pixel of two quads, whose lanes the vectors are, value by value.
+#[must_use]
+#[inline(always)]
+pub fn quads_by_pixel(values: [f32x8; 4]) -> [[[f32; 4]; 4]; 2] {
+    let values: [[f32x4; 2]; 4] = wide::bytemuck::cast(values);
+    [0, 1].map(|quad| wide::bytemuck::cast(f32x4::transpose(values.map(|halves| halves[quad]))))
 }
 
 /// Sixteen lanes of two vectors of eight.

@@ -3,17 +3,17 @@
 use super::progress::Progress;
 use super::settings::refusal;
 use super::{Refusal, output, stats};
-use basrelief::frame::{Format, Part, PngHead, write_png};
+use basrelief::frame::{Format, Part, Pixel, PngHead, write_png};
 use basrelief::{Frame, Region, Renderer, Settings, Stats};
 use std::io::BufWriter;
 use std::path::Path;
 use std::time::Instant;
 
-/// Pixels of a picture from which on it is drawn in bands: 256 MiB as a frame.
+/// Pixels of a picture from which on it is drawn in bands: 64 MiB as a frame, 256 MiB in linear light.
 const LARGE: u64 = 1 << 24;
-/// Pixels of a band: 64 MiB as a frame, and many tiles for every thread.
+/// Pixels of a band: 16 MiB as a frame, and many tiles for every thread.
 const BAND: u32 = 1 << 22;
-/// Most pixels of a picture that is drawn whole: 4 GiB as a frame.
+/// Most pixels of a picture that is drawn whole: 1 GiB as a frame, 4 GiB in linear light.
 const MAX_WHOLE: u64 = 1 << 28;
 
 /// What drawing took, in milliseconds and in all.
@@ -59,35 +59,51 @@ impl Way {
     }
 }
 
-/// Draws the picture of `settings`, with which the renderer was made, into the file `path`.
+/// Draws the picture of `settings`, with which the renderer was made, into the file `path`: once, or once to warm up and then
+/// as often as it is to be measured.
 pub(super) fn draw(
     renderer: &mut Renderer,
     settings: &Settings,
     path: &Path,
-    way: Way,
+    (way, repeat): (Way, Option<u32>),
     progress: &Progress,
-) -> Result<Took, Refusal> {
-    match way {
-        Way::Whole(format) => {
-            let mut frame = Frame::default();
-            let took = draw_timed(renderer, &mut frame);
-            write(&frame, settings, path, format).map(|()| took)
+) -> Result<Vec<Took>, Refusal> {
+    let (took, bytes) = match way {
+        Way::Bands => return Ok(vec![draw_bands(renderer, settings, path, progress)?]),
+        // Linear light is asked for, or the frame over black.
+        Way::Whole(format @ (Format::Exr | Format::Jpeg)) => {
+            draw_whole::<[f32; 4]>(renderer, settings, format, repeat, progress)?
         }
-        Way::Bands => draw_bands(renderer, settings, path, progress),
+        Way::Whole(format) => draw_whole::<[u8; 4]>(renderer, settings, format, repeat, progress)?,
+    };
+    output::write(path, &bytes).map(|()| took)
+}
+
+fn draw_whole<P: Pixel>(
+    renderer: &mut Renderer,
+    settings: &Settings,
+    format: Format,
+    repeat: Option<u32>,
+    progress: &Progress,
+) -> Result<(Vec<Took>, Vec<u8>), Refusal> {
+    let mut frame = Frame::<P>::default();
+    let mut took = vec![draw_timed(renderer, &mut frame)];
+    if let Some(num) = repeat {
+        took.clear();
+        for i in 1..=num {
+            progress.stage(format!("drawing frame {i} of {num}"));
+            took.push(draw_timed(renderer, &mut frame));
+        }
     }
+    let bytes = frame.encode_part(format, part(settings)).map_err(|e| refusal(&e))?;
+    Ok((took, bytes))
 }
 
 /// Draws the renderer's frame in memory, that of `frame` where it has the size.
-pub(super) fn draw_timed(renderer: &mut Renderer, frame: &mut Frame) -> Took {
+fn draw_timed<P: Pixel>(renderer: &mut Renderer, frame: &mut Frame<P>) -> Took {
     let start = Instant::now();
     let stats = renderer.render_into(frame, &|| milliseconds(start));
     (milliseconds(start), stats)
-}
-
-/// Writes a frame that was drawn under `settings`.
-pub(super) fn write(frame: &Frame, settings: &Settings, path: &Path, format: Format) -> Result<(), Refusal> {
-    let bytes = frame.encode_part(format, part(settings)).map_err(|e| refusal(&e))?;
-    output::write(path, &bytes)
 }
 
 /// What the picture of `settings` is a part of, if it is.
@@ -102,7 +118,7 @@ fn draw_bands(renderer: &mut Renderer, settings: &Settings, path: &Path, progres
     let (width, height, part) = (drawn.width, drawn.height, part(settings));
     let head = PngHead { width, height, has_opacity, part };
     let num_rows = band_height(width);
-    let (mut took, mut frame) = (Took::default(), Frame::default());
+    let (mut took, mut frame) = (Took::default(), Frame::<[u8; 4]>::default());
     let bands = (0..height).step_by(num_rows as usize).map(|y| {
         progress.stage(format!("drawing row {y} of {height}"));
         let band = Region { y: drawn.y + y, height: num_rows.min(height - y), ..drawn };

@@ -7,8 +7,8 @@ use super::progress::Progress;
 use super::settings::refusal;
 use super::stats::Report;
 use super::{Refusal, measured, output, scene_file};
-use basrelief::{Frame, Lighting, Renderer, Settings};
-use std::path::{Path, PathBuf};
+use basrelief::{Lighting, Renderer, Settings};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -141,7 +141,7 @@ impl Job<'_> {
                 true => format!("drawing frame {number} ({} of {})", i + 1, self.pictures.len()),
                 false => "drawing".into(),
             });
-            let took = self.draw_one(renderer, path)?;
+            let took = picture::draw(renderer, &self.settings, path, (self.way, self.options.repeat), &self.progress)?;
             if self.options.json {
                 let frame = self.sequence.is_numbered().then_some(*number);
                 output::print(&report(took.clone()).of_picture(path, frame).json()?)?;
@@ -151,19 +151,4 @@ impl Job<'_> {
         Ok(all)
     }
 
-    /// Draws and writes a picture, or draws it once to warm up and then as often as it is to be measured.
-    fn draw_one(&self, renderer: &mut Renderer, path: &Path) -> Result<Vec<Took>, Refusal> {
-        let (Some(num), Way::Whole(format)) = (self.options.repeat, self.way) else {
-            return Ok(vec![picture::draw(renderer, &self.settings, path, self.way, &self.progress)?]);
-        };
-        let mut frame = Frame::default();
-        picture::draw_timed(renderer, &mut frame);
-        let mut all = Vec::new();
-        for i in 1..=num {
-            self.progress.stage(format!("drawing frame {i} of {num}"));
-            all.push(picture::draw_timed(renderer, &mut frame));
-        }
-        picture::write(&frame, &self.settings, path, format)?;
-        Ok(all)
-    }
 }

@@ -1,6 +1,6 @@
 //! Image formats and their encoders.
 
-use super::Frame;
+use super::{Frame, Pixel};
 use super::png::{Part, PngHead, write_png};
 use crate::error::{Error, Result};
 use image::codecs::{bmp, jpeg, openexr, tga, tiff};
@@ -61,7 +61,7 @@ impl Format {
 }
 
 /// The bytes of `frame` as a file, which in PNG says of what it is a part.
-pub(super) fn encode(frame: &Frame, format: Format, part: Option<Part>) -> Result<Vec<u8>> {
+pub(super) fn encode<P: Pixel>(frame: &Frame<P>, format: Format, part: Option<Part>) -> Result<Vec<u8>> {
     let has_opacity = format != Format::Jpeg && !frame.is_opaque();
     match format {
         Format::Exr => encode_linear(frame, has_opacity),
@@ -75,7 +75,7 @@ pub(super) fn encode(frame: &Frame, format: Format, part: Option<Part>) -> Resul
     .map_err(|e| Error::scene("frame", e))
 }
 
-fn encode_bytes(frame: &Frame, format: Format, has_opacity: bool) -> ImageResult<Vec<u8>> {
+fn encode_bytes<P: Pixel>(frame: &Frame<P>, format: Format, has_opacity: bool) -> ImageResult<Vec<u8>> {
     let color = if has_opacity { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
     let pixels = frame.to_bytes(has_opacity);
     let mut file = Cursor::new(Vec::new());
@@ -89,11 +89,11 @@ fn encode_bytes(frame: &Frame, format: Format, has_opacity: bool) -> ImageResult
     Ok(file.into_inner())
 }
 
-fn encode_linear(frame: &Frame, has_opacity: bool) -> ImageResult<Vec<u8>> {
+fn encode_linear<P: Pixel>(frame: &Frame<P>, has_opacity: bool) -> ImageResult<Vec<u8>> {
     let (color, num_channels) =
         if has_opacity { (ExtendedColorType::Rgba32F, 4) } else { (ExtendedColorType::Rgb32F, 3) };
     let pixels: Vec<u8> =
-        frame.pixels.iter().flat_map(|pixel| &pixel[..num_channels]).flat_map(|c| c.to_ne_bytes()).collect();
+        frame.pixels.iter().flat_map(|pixel| pixel.to_linear().into_iter().take(num_channels)).flat_map(f32::to_ne_bytes).collect();
     let mut file = Cursor::new(Vec::new());
     openexr::OpenExrEncoder::new(&mut file).write_image(&pixels, frame.width, frame.height, color)?;
     Ok(file.into_inner())

@@ -1,14 +1,16 @@
-//! The finished picture: linear pixels, their 8-bit sRGB encoding, and files of it.
+//! The finished picture: linear pixels, or their 8-bit sRGB encoding, and files of it.
 //!
 //! A file is encoded in memory, written under a temporary name in its own folder, flushed to the disk and renamed:
 //! whoever looks finds the whole old file or the whole new one ([`write_whole`]).
 
 mod format;
+mod pixel;
 mod png;
 mod save;
 
 pub use self::png::{Part, PngHead, write_png};
 pub use format::Format;
+pub use pixel::Pixel;
 pub use save::{WholeFile, check_writable, write_whole};
 
 use crate::error::{Error, Result};
@@ -17,21 +19,28 @@ use crate::texture::srgb8_from_linear;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// A picture in linear light; without a pixel by default.
+fn over_black([r, g, b, _]: [f32; 4]) -> [u8; 3] {
+    [r, g, b].map(srgb8_from_linear)
+}
+
+/// Pixels that a thread encodes at once.
+const ROW: usize = 4096;
+
+/// A picture, in linear light unless said otherwise (see [`Pixel`]); without a pixel by default.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Frame {
+pub struct Frame<P = [f32; 4]> {
     /// Pixels a row.
     pub width: u32,
     /// Rows; row 0 is the top.
     pub height: u32,
-    /// Linear RGB, premultiplied by the fourth component, the opacity.
-    pub pixels: Vec<[f32; 4]>,
+    /// Row by row: linear RGB, premultiplied by the fourth component, the opacity, or what [`Pixel`] says.
+    pub pixels: Vec<P>,
 }
 
-impl Frame {
-    /// A frame of one colour: linear RGB, premultiplied by the fourth component, the opacity.
+impl<P: Pixel> Frame<P> {
+    /// A frame of one colour.
     #[must_use]
-    pub fn filled(width: u32, height: u32, color: [f32; 4]) -> Self {
+    pub fn filled(width: u32, height: u32, color: P) -> Self {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
 
@@ -50,22 +59,26 @@ impl Frame {
         (self.width, self.height) = (region.width, region.height);
     }
 
+
     /// Whether no pixel lets anything through.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
-        self.pixels.iter().all(|pixel| pixel[3] >= 1.0)
+        self.pixels.iter().all(|pixel| pixel.to_linear()[3] >= 1.0)
     }
 
     /// 8-bit sRGB with straight opacity, row by row from the top.
     #[must_use]
     pub fn to_rgba8(&self) -> Vec<[u8; 4]> {
-        self.pixels.par_iter().map(|&pixel| rgba8(pixel)).collect()
+        let mut bytes = vec![[0; 4]; self.pixels.len()];
+        let rows = bytes.par_chunks_mut(ROW).zip(self.pixels.par_chunks(ROW));
+        rows.for_each(|(bytes, row)| P::rgba8_row(row, bytes));
+        bytes
     }
 
     /// 8-bit sRGB over black, row by row from the top.
     #[must_use]
     pub fn to_rgb8(&self) -> Vec<[u8; 3]> {
-        self.pixels.par_iter().map(|&[r, g, b, _]| [r, g, b].map(srgb8_from_linear)).collect()
+        self.pixels.par_iter().map(|pixel| over_black(pixel.to_linear())).collect()
     }
 
     /// 8-bit sRGB samples, row by row from the top: four a pixel with straight opacity, or three over black.
@@ -77,7 +90,7 @@ impl Frame {
     /// The bytes of an image file.
     ///
     /// Formats of 8 bits hold sRGB: RGB where the frame is opaque everywhere, else RGBA with straight opacity; JPEG
-    /// knows no opacity and holds the frame over black. EXR holds the linear pixels as they are.
+    /// knows no opacity and holds the frame over black. EXR holds linear pixels.
     ///
     /// # Errors
     /// Says why when the format cannot hold the frame.
@@ -106,27 +119,9 @@ impl Frame {
     }
 }
 
-fn rgba8([r, g, b, opacity]: [f32; 4]) -> [u8; 4] {
-    if opacity > 0.0 {
-        let opacity = opacity.min(1.0);
-        let [r, g, b] = [r, g, b].map(|c| srgb8_from_linear(c / opacity));
-        [r, g, b, (opacity * 255.0 + 0.5) as u8]
-    } else {
-        [0; 4]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn opacity_is_straight_in_bytes() {
-        assert_eq!(rgba8([0.25, 0.0, 0.5, 0.5]), [188, 0, 255, 128]);
-        assert_eq!(rgba8([0.0; 4]), [0; 4]);
-        assert_eq!(rgba8([f32::NAN, 2.0, -1.0, 1.0]), [0, 255, 0, 255]);
-        assert_eq!(rgba8([1.0, 1.0, 1.0, f32::NAN]), [0; 4]);
-    }
 
     #[test]
     fn each_format_holds_the_frame() {
@@ -143,6 +138,21 @@ mod tests {
         assert_eq!(read.into_raw(), frame.pixels.concat());
         let read = image::load_from_memory(&frame.encode(Format::Jpeg).unwrap()).unwrap().into_rgb8();
         assert!(read.get_pixel(0, 0).0.iter().zip(frame.to_rgb8()[0]).all(|(&a, b)| a.abs_diff(b) < 12));
+    }
+
+    #[test]
+    fn a_frame_of_bytes_is_the_same_file() {
+        let mut linear = Frame::filled(5, 3, [0.2, 0.4, 0.6, 1.0]);
+        for opacity in [1.0, 0.5] {
+            linear.pixels[7] = [0.1, 0.2, 0.3, opacity];
+            let bytes = Frame { width: 5, height: 3, pixels: linear.to_rgba8() };
+            for format in [Format::Png, Format::Tga, Format::Tiff, Format::Bmp] {
+                assert!(bytes.encode(format).unwrap() == linear.encode(format).unwrap(), "{format:?} {opacity}");
+            }
+            let close = |(a, b): (&u8, &u8)| a.abs_diff(*b) <= u8::from(opacity < 1.0);
+            assert!(bytes.to_rgb8().as_flattened().iter().zip(linear.to_rgb8().as_flattened()).all(close));
+            assert!(bytes.encode(Format::Exr).is_ok());
+        }
     }
 
     #[test]

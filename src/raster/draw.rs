@@ -8,19 +8,16 @@ use super::bin::{Bins, TileGrid};
 use super::block::{QuadBlock, SHADED_BLOCK};
 use super::edge::Rect;
 use super::gather::{SeenQuad, gather};
-use super::quad::{AttributePlanes, QuadPair, covered};
+use super::quad::{AttributePlanes, QuadPair};
 use super::scratch::{Borrowed, Scratch};
 use super::tile::NONE;
-use crate::frame::Frame;
+use crate::frame::{Frame, Pixel};
 use crate::geometry::{Geometry, ScreenTriangle};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::simd::PixelLanes;
 use rayon::prelude::*;
 use std::sync::Mutex;
-
-/// Linear RGB, premultiplied by the fourth component, the opacity.
-type Pixel = [f32; 4];
 
 /// What was drawn, and what it took. Times are in milliseconds, of all threads together but for `binning_ms`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -78,13 +75,13 @@ impl Rasterizer {
     /// Draws the triangles of `geometry`, which must have been projected from `scene` under `settings`. `shade` appends
     /// the linear red, green and blue of eight pixels for each pair of a block, which must depend on that block only. `clock`
     /// gives milliseconds. The frame is resized to the [area](TileGrid::area) of the tiles and overwritten.
-    pub fn draw(
+    pub fn draw<P: Pixel>(
         &mut self,
         geometry: &Geometry,
         (scene, settings): (&Scene, &Settings),
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
         clock: &(dyn Fn() -> f64 + Sync),
-        frame: &mut Frame,
+        frame: &mut Frame<P>,
     ) -> RasterStats {
         let grid = TileGrid::new(settings);
         let start = clock();
@@ -92,12 +89,11 @@ impl Rasterizer {
         let binning_ms = clock() - start;
         [frame.width, frame.height] = grid.area.size().map(|side| side as u32);
         let num_pixels = frame.width as usize * frame.height as usize;
-        let is_fresh = frame.pixels.len() != num_pixels;
-        if is_fresh {
+        if frame.pixels.len() != num_pixels {
             // Zeros of the system's, which it hands out page by page to the threads that draw.
-            frame.pixels = vec![Pixel::default(); num_pixels];
+            frame.pixels = vec![P::default(); num_pixels];
         }
-        let painter = Painter { geometry, scene, settings, grid, bins: &self.bins, clock, is_fresh };
+        let painter = Painter { geometry, scene, settings, grid, bins: &self.bins, clock };
         let scratches = &self.scratches;
         let mut rows = rows_by_tile(frame, &grid);
         let tiles = rows
@@ -113,7 +109,7 @@ impl Rasterizer {
 }
 
 /// The frame's rows cut into tiles: `tile_size` slices a tile, tile after tile; empty ones below the frame's last row.
-fn rows_by_tile<'a>(frame: &'a mut Frame, grid: &TileGrid) -> Vec<&'a mut [Pixel]> {
+fn rows_by_tile<'a, P>(frame: &'a mut Frame<P>, grid: &TileGrid) -> Vec<&'a mut [P]> {
     let (width, tile_size) = (frame.width as usize, grid.tile_size as usize);
     let mut slices = Vec::with_capacity(grid.num() * tile_size);
     let mut rows = Vec::with_capacity(tile_size);
@@ -136,16 +132,14 @@ struct Painter<'a> {
     grid: TileGrid,
     bins: &'a Bins,
     clock: &'a (dyn Fn() -> f64 + Sync),
-    /// Whether all pixels are 0 already.
-    is_fresh: bool,
 }
 
 impl Painter<'_> {
     /// Draws a tile; gives what that took.
-    fn paint(
+    fn paint<P: Pixel>(
         &self,
         tile: usize,
-        rows: &mut [&mut [Pixel]],
+        rows: &mut [&mut [P]],
         scratch: &mut Scratch,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
     ) -> RasterStats {
@@ -153,8 +147,9 @@ impl Painter<'_> {
         scratch.list.clear();
         self.bins.list(tile, &mut scratch.list);
         if scratch.list.is_empty() {
-            let background = self.background();
-            rows.iter_mut().for_each(|row| row.fill(background));
+            let mut background = [P::default()];
+            P::set_row(&mut background, &[self.background()]);
+            rows.iter_mut().for_each(|row| row.fill(background[0]));
             return RasterStats::default();
         }
         let start = (self.clock)();
@@ -164,13 +159,15 @@ impl Painter<'_> {
         let found = (self.clock)();
         let is_full = self.is_full(&rect, &scratch.quads);
         let is_set = is_full && scratch.quads.iter().all(|quad| self.is_whole(quad));
-        if !(self.is_fresh || is_set) {
-            rows.iter_mut().for_each(|row| row.fill(Pixel::default()));
+        scratch.canvas.resize(rect.size().map(|side| side as usize));
+        if !is_set {
+            scratch.canvas.clear();
         }
-        let (pixels_shaded, shade_ms) = self.shade_quads(&rect, rows, scratch, shade);
+        let (pixels_shaded, shade_ms) = self.shade_quads(&rect, scratch, shade);
         if !is_full {
-            self.add_background(rows);
+            scratch.canvas.add_background(self.background());
         }
+        scratch.canvas.copy_to(rows);
         RasterStats {
             pixels_shaded,
             quads_shaded: scratch.quads.len() as u64,
@@ -229,11 +226,10 @@ impl Painter<'_> {
     fn shade_quads(
         &self,
         rect: &Rect,
-        rows: &mut [&mut [Pixel]],
         scratch: &mut Scratch,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
     ) -> (u64, f64) {
-        let Scratch { quads, planes, colors, .. } = scratch;
+        let Scratch { quads, planes, colors, canvas, .. } = scratch;
         let share = 1.0 / self.settings.msaa as f32;
         let block_of = |quad: &SeenQuad| quad.origin.map(|c| usize::from(c) / SHADED_BLOCK);
         let (mut num_shaded, mut shade_ms) = (0, 0.0);
@@ -247,7 +243,7 @@ impl Painter<'_> {
                 shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {
                     let is_whole = pair.iter().all(|quad| self.is_whole(quad));
-                    num_shaded += if is_whole { set(rows, pair, color) } else { add(rows, pair, share, color) };
+                    num_shaded += if is_whole { canvas.set(pair, color) } else { canvas.add(pair, share, color) };
                 }
             }
         }
@@ -267,67 +263,8 @@ impl Painter<'_> {
         num_seen == width * height * u64::from(self.settings.msaa)
     }
 
-    fn background(&self) -> Pixel {
+    fn background(&self) -> [f32; 4] {
         let [r, g, b, a] = self.scene.background;
         [r * a, g * a, b * a, a]
     }
-
-    fn add_background(&self, rows: &mut [&mut [Pixel]]) {
-        let background = self.background();
-        for pixel in rows.iter_mut().flat_map(|row| row.iter_mut()) {
-            // Shares are multiples of 1/8 at least: their sum is exact.
-            let left = 1.0 - pixel[3];
-            if left > 0.0 {
-                (0..4).for_each(|i| pixel[i] += background[i] * left);
-            }
-        }
-    }
-}
-
-/// Adds the colours of one or two quads to the pixels, `share` for each sample; gives how many pixels took part.
-#[inline]
-fn add(rows: &mut [&mut [Pixel]], pair: &[SeenQuad], share: f32, colors: &[PixelLanes; 3]) -> u64 {
-    let [r, g, b] = colors.each_ref().map(PixelLanes::as_array);
-    let mut num = 0;
-    for (i, quad) in pair.iter().enumerate() {
-        let [x, y] = quad.origin.map(usize::from);
-        for lane in covered(u64::from(u32::from_le_bytes(quad.coverage))) {
-            // Below the frame's last row there may be none, or an empty one.
-            let Some(pixel) = rows.get_mut(y + lane / 2).and_then(|row| row.get_mut(x + lane % 2)) else { continue };
-            let share = f32::from(quad.coverage[lane]) * share;
-            let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);
-            (0..3).for_each(|c| pixel[c] += color[c]);
-            pixel[3] += share;
-            num += 1;
-        }
-    }
-    num
-}
-
-/// Sets the pixels of one or two quads of which one triangle covers every sample; gives how many pixels that were.
-#[inline]
-fn set(rows: &mut [&mut [Pixel]], pair: &[SeenQuad], colors: &[PixelLanes; 3]) -> u64 {
-    let [r, g, b] = colors.each_ref().map(PixelLanes::as_array);
-    let mut num = 0;
-    for (i, quad) in pair.iter().enumerate() {
-        let [x, y] = quad.origin.map(usize::from);
-        for dy in 0..2 {
-            let lane = 4 * i + 2 * dy;
-            let two = [[r[lane], g[lane], b[lane], 1.0], [r[lane + 1], g[lane + 1], b[lane + 1], 1.0]];
-            match rows.get_mut(y + dy).and_then(|row| row.get_mut(x..)) {
-                Some([first, second, ..]) => {
-                    [*first, *second] = two;
-                    num += 2;
-                }
-                // Of the frame's last column.
-                Some([first]) => {
-                    *first = two[0];
-                    num += 1;
-                }
-                // Below the frame's last row.
-                _ => {}
-            }
-        }
-    }
-    num
 }

@@ -11,6 +11,7 @@
 mod attributes;
 mod bin;
 mod block;
+mod canvas;
 mod draw;
 mod edge;
 mod gather;

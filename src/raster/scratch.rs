@@ -3,6 +3,7 @@
 //! A task takes a [`Scratch`] from the rasterizer's pool and gives it back when it ends, so there are as many as tasks ever
 //! ran at once, and their buffers have grown to what the frame needs after the first one.
 
+use super::canvas::Canvas;
 use super::gather::SeenQuad;
 use super::quad::AttributePlanes;
 use super::tile::VisibilityBuffer;
@@ -26,6 +27,8 @@ pub(super) struct Scratch {
     pub(super) materials: Vec<u32>,
     /// Colours of the pairs of a block.
     pub(super) colors: Vec<[PixelLanes; 3]>,
+    /// The tile's pixels.
+    pub(super) canvas: Canvas,
 }
 
 /// A [`Scratch`] on loan from the pool.

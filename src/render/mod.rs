@@ -13,7 +13,7 @@ mod queue;
 mod tables;
 
 use crate::error::Result;
-use crate::frame::Frame;
+use crate::frame::{Frame, Pixel};
 use crate::geometry::Geometry;
 use crate::raster::{QuadBlock, Rasterizer, TileGrid};
 use crate::scene::{Camera, Scene};
@@ -131,7 +131,7 @@ impl Renderer {
 
     /// Draws over a frame, whose memory is taken again where its size is right, and says what it took; `clock` gives
     /// milliseconds, since the library reads no clock of its own.
-    pub fn render_into(&mut self, frame: &mut Frame, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
+    pub fn render_into<P: Pixel>(&mut self, frame: &mut Frame<P>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
         let Self { scene, settings, tables, geometry, rasterizer } = self;
         let start = clock();
         geometry.project(scene, settings);

@@ -10,6 +10,7 @@ mod pyramid;
 mod resample;
 mod surface;
 
+pub(crate) use color::srgb8_of_four;
 pub use color::{linear_from_srgb, linear_from_srgb8, srgb_from_linear, srgb8_from_linear};
 pub use image::{ColorImage, HeightImage, NormalImage};
 pub(crate) use level::{APRON, FULL_F32, unpack_normal, wrap_index};

@@ -1,0 +1,82 @@
+//! The pixels of one tile while their colours are added up.
+
+use super::gather::SeenQuad;
+use super::quad::covered;
+use crate::frame::Pixel;
+use crate::simd::{PixelLanes, quads_by_pixel};
+
+/// Pixels in linear light, row by row: RGB, premultiplied by the fourth component, the opacity. Rows and columns are an even
+/// number, so that every quad lies within.
+#[derive(Debug, Default)]
+pub(super) struct Canvas {
+    pixels: Vec<[f32; 4]>,
+    /// Pixels a row.
+    stride: usize,
+    size: [usize; 2],
+}
+
+impl Canvas {
+    /// Takes the size of a tile, in pixels; what the pixels are then is left open.
+    pub(super) fn resize(&mut self, size: [usize; 2]) {
+        self.size = size;
+        let [stride, num_rows] = size.map(|side| side.next_multiple_of(2));
+        self.stride = stride;
+        self.pixels.resize(stride * num_rows, [0.0; 4]);
+    }
+
+    /// Makes all pixels transparent.
+    pub(super) fn clear(&mut self) {
+        self.pixels.fill([0.0; 4]);
+    }
+
+    /// Adds the colours of one or two quads to the pixels, `share` for each sample; gives how many pixels took part.
+    #[inline]
+    pub(super) fn add(&mut self, pair: &[SeenQuad], share: f32, colors: &[PixelLanes; 3]) -> u64 {
+        let [r, g, b] = colors.each_ref().map(PixelLanes::as_array);
+        let mut num = 0;
+        for (i, quad) in pair.iter().enumerate() {
+            let [x, y] = quad.origin.map(usize::from);
+            for lane in covered(u64::from(u32::from_le_bytes(quad.coverage))) {
+                let pixel = &mut self.pixels[(y + lane / 2) * self.stride + x + lane % 2];
+                let share = f32::from(quad.coverage[lane]) * share;
+                let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);
+                (0..3).for_each(|c| pixel[c] += color[c]);
+                pixel[3] += share;
+                num += 1;
+            }
+        }
+        num
+    }
+
+    /// Sets the pixels of one or two quads of which one triangle covers every sample; gives how many pixels that were.
+    #[inline]
+    pub(super) fn set(&mut self, pair: &[SeenQuad], colors: &[PixelLanes; 3]) -> u64 {
+        let [r, g, b] = *colors;
+        let quads = quads_by_pixel([r, g, b, PixelLanes::ONE]);
+        for (quad, [a, b, c, d]) in pair.iter().zip(quads) {
+            let [x, y] = quad.origin.map(usize::from);
+            let rows = &mut self.pixels[y * self.stride + x..][..self.stride + 2];
+            [rows[0], rows[1]] = [a, b];
+            [rows[self.stride], rows[self.stride + 1]] = [c, d];
+        }
+        4 * pair.len() as u64
+    }
+
+    /// Adds what is seen behind pixels that are not covered wholly.
+    pub(super) fn add_background(&mut self, background: [f32; 4]) {
+        for pixel in &mut self.pixels {
+            // Shares are multiples of 1/8 at least: their sum is exact.
+            let left = 1.0 - pixel[3];
+            if left > 0.0 {
+                (0..4).for_each(|i| pixel[i] += background[i] * left);
+            }
+        }
+    }
+
+    /// Sets the tile's rows of the frame.
+    pub(super) fn copy_to<P: Pixel>(&self, rows: &mut [&mut [P]]) {
+        for (row, pixels) in rows.iter_mut().zip(self.pixels.chunks_exact(self.stride)).take(self.size[1]) {
+            P::set_row(row, &pixels[..row.len()]);
+        }
+    }
+}
