@@ -25,11 +25,9 @@ pub(super) fn corners(level: &Level, x: i32x8, y: i32x8) -> [Corners; 2] {
     }
     let first = [x.as_array()[0] - BEFORE, y.as_array()[0] - ABOVE];
     let (columns, rows) = (x - i32x8::splat(first[0]), y - i32x8::splat(first[1]));
-    if (beyond(columns, 14) | beyond(rows, 30)).to_bitmask() == 0 {
-        picked(level, first, simd::as_unsigned(columns), simd::as_unsigned(rows))
-    } else {
-        row_by_row(level, x, y)
-    }
+    let is_near = (beyond(columns, 14) | beyond(rows, 30)).to_bitmask() == 0;
+    let near = if is_near { picked(level, first, simd::as_unsigned(columns), simd::as_unsigned(rows)) } else { None };
+    near.unwrap_or_else(|| row_by_row(level, x, y))
 }
 
 /// A sign for every place that is not within 0 to `most`.
@@ -38,33 +36,33 @@ fn beyond(places: i32x8, most: i32) -> i32x8 {
     places | (i32x8::splat(most) - places)
 }
 
-/// All places pick from the same columns: those 0 to 15, and rows 0 to 31, from the first word on.
+/// All places pick from the same columns: those 0 to 15, and rows 0 to 31, from the first word on. `None` where rows do not
+/// follow each other in memory.
 #[inline(always)]
-fn picked(level: &Level, first: [i32; 2], columns: u32x8, rows: u32x8) -> [Corners; 2] {
+fn picked(level: &Level, first: [i32; 2], columns: u32x8, rows: u32x8) -> Option<[Corners; 2]> {
     let numbers = join_words([columns, columns + 1]);
-    let mut needed = (u32x8::splat(3) << rows).to_array().into_iter().fold(0, |all, bits| all | bits);
-    let rows = join_words([rows, rows]);
-    let start = level.run_start(first[0]);
+    let needed = (u32x8::splat(3) << rows).to_array().into_iter().fold(0, |all, bits| all | bits);
+    let top = needed.trailing_zeros();
+    let num_rows = 32 - needed.leading_zeros() - top;
+    let words = &level.rows(first[1] + top as i32, num_rows as usize)?[level.run_start(first[0])..];
+    // Rows down to the one of each place.
+    let mut down = join_words([rows, rows]) - u32x16::splat(top);
     let mut corners = [Corners::default(); 2];
-    while needed != 0 {
-        let row = needed.trailing_zeros();
-        needed &= needed - 1;
-        let is_above = rows.simd_eq(u32x16::splat(row));
-        let is_below = rows.simd_eq(u32x16::splat(row.wrapping_sub(1)));
-        let start = level.row_start(first[1] + row as i32) + start;
-        take(level, start, numbers, [is_above, is_below], &mut corners);
+    for row in words.chunks(level.pitch()).take(num_rows as usize) {
+        let places = [down.simd_eq(u32x16::ZERO), down.simd_eq(u32x16::splat(u32::MAX))];
+        take(row, level.stride(), numbers, places, &mut corners);
+        down -= u32x16::ONE;
     }
-    corners
+    Some(corners)
 }
 
-/// Of a row's words from `start` on, those with the given numbers, for the places whose row, or whose next row, it is.
+/// Of a row's words, those with the given numbers, for the places whose row, or whose next row, it is.
 #[inline(always)]
-fn take(level: &Level, start: usize, numbers: u32x16, [is_above, is_below]: [u32x16; 2], corners: &mut [Corners; 2]) {
-    let stride = level.stride();
+fn take(row: &[u32], stride: usize, numbers: u32x16, [is_above, is_below]: [u32x16; 2], corners: &mut [Corners; 2]) {
     // One check for both planes.
-    let words = &level.words()[start..][..stride + 16];
+    let row = &row[..stride + 16];
     for (plane, corners) in corners.iter_mut().enumerate() {
-        let words = simd::pick(Level::long_run(words, plane * stride), numbers);
+        let words = simd::pick(Level::long_run(row, plane * stride), numbers);
         corners.above = is_above.bitselect(words, corners.above);
         corners.below = is_below.bitselect(words, corners.below);
     }
@@ -86,8 +84,8 @@ fn row_by_row(level: &Level, x: i32x8, y: i32x8) -> [Corners; 2] {
         let columns = simd::as_unsigned(columns) & u32x8::splat(15);
         let numbers = join_words([columns, columns + 1]);
         let [is_above, is_below] = of_row.map(|places| join_words([simd::bits(places); 2]));
-        let start = level.start_at(first, row);
-        take(level, start, numbers, [is_above, is_below], &mut corners);
+        let words = &level.words()[level.start_at(first, row)..];
+        take(words, level.stride(), numbers, [is_above, is_below], &mut corners);
         left = [left[0] & !of_row[0], left[1] & !of_row[1]];
     }
     corners

@@ -54,16 +54,9 @@ pub fn bounded_place(place: [PixelLanes; 2]) -> [PixelLanes; 2] {
 }
 
 /// A derivative of eight pixels, shortened where it is longer than 16 repeats, and 0 for what is not a number.
-#[inline]
-pub(super) fn shortened([u, v]: [PixelLanes; 2]) -> [PixelLanes; 2] {
-    let is_short = |c: PixelLanes| c.abs().simd_le(PixelLanes::splat(MAX_LENGTH));
-    if (is_short(u) & is_short(v)).all() { [u, v] } else { shortened_lanes([u, v]) }
-}
-
-/// Few are, so that what it takes is worth a branch.
 #[cold]
 #[inline(never)]
-fn shortened_lanes(derivative: [PixelLanes; 2]) -> [PixelLanes; 2] {
+fn shortened(derivative: [PixelLanes; 2]) -> [PixelLanes; 2] {
     let [u, v] = derivative.map(finite);
     let longest = u.abs().fast_max(v.abs());
     let is_long = longest.simd_gt(PixelLanes::splat(MAX_LENGTH));
@@ -73,7 +66,7 @@ fn shortened_lanes(derivative: [PixelLanes; 2]) -> [PixelLanes; 2] {
 
 /// Formula (2) or (3), as meant or as printed, in each quad of `uv` with the relief's `offset`.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Derivatives, Formulas)) -> Differences {
     let (derivatives, formulas) = which;
     if formulas == Formulas::Meant {
@@ -91,6 +84,7 @@ pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Deriv
 }
 
 /// The differences lane by lane.
+#[inline(never)]
 fn letter_by_letter(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Derivatives, Formulas)) -> Differences {
     let [u, v, m, r] = [uv[0], uv[1], offset[0], offset[1]].map(PixelLanes::to_array);
     let mut result = [[0.0_f32; 8]; 4];
@@ -110,7 +104,7 @@ fn letter_by_letter(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], which: (Deri
 /// formula (3) as meant, a jump of the relief between two pixels (a difference more than `max_stretch` times as long as
 /// that of (2), in texture repeats) is not taken for the slope of a surface: there stands the difference of (2).
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn differences_for(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], settings: &Settings) -> Differences {
     let which = (settings.derivatives, settings.formulas);
     let displaced = differences(uv, offset, which);
@@ -167,6 +161,19 @@ pub fn at_pixel(here: Corner, right: Corner, below: Corner, which: (Derivatives,
 }
 
 impl Differences {
+    /// The derivatives, shortened where they are longer than 16 repeats, and 0 for what is not a number.
+    #[inline(always)]
+    pub(super) fn shortened(&self) -> Self {
+        let Self { dx, dy } = *self;
+        let is_short = |c: PixelLanes| c.abs().simd_le(PixelLanes::splat(MAX_LENGTH));
+        // Few are longer, so that what it takes is worth a branch.
+        if (is_short(dx[0]) & is_short(dx[1]) & is_short(dy[0]) & is_short(dy[1])).all() {
+            *self
+        } else {
+            Self { dx: shortened(dx), dy: shortened(dy) }
+        }
+    }
+
     /// The footprint of one lane around `center`; derivatives beyond 16 repeats are shortened, and 0 for what is not a number.
     #[must_use]
     pub fn footprint(&self, center: &[PixelLanes; 2], lane: usize) -> Footprint {

@@ -4,9 +4,8 @@
 
 use super::Differences;
 use super::corners::{Corners, corners};
-use super::footprint::shortened;
 use crate::simd::{LineLanes, PixelLanes, high_halves, i32x8, join, lanes, low_halves, mask, split, u32x16};
-use crate::texture::Surface;
+use crate::texture::{Level, Surface};
 
 /// Farthest texel from the pattern's first: numbers up to there, and their neighbours, fit 32 bits.
 const FARTHEST: f32 = (1 << 30) as f32;
@@ -14,7 +13,6 @@ const FARTHEST: f32 = (1 << 30) as f32;
 /// Eight places in a level's texels.
 #[derive(Clone, Copy)]
 struct Spot {
-    level: usize,
     /// The texel to the upper left.
     corner: [i32x8; 2],
     /// How far a place is from its centre to that of the next one, 0 to 1.
@@ -23,8 +21,9 @@ struct Spot {
 
 /// Eight places in the two levels next to their size, and the share of the coarser one.
 struct Spots {
-    /// `None` where pixels are on different levels.
-    levels: Option<[Spot; 2]>,
+    /// Whether all are in the same levels.
+    is_same: bool,
+    spots: [Spot; 2],
     blend: PixelLanes,
 }
 
@@ -34,29 +33,51 @@ struct Spots {
 pub fn colors(surface: &Surface, groups: &[[PixelLanes; 3]], mut sink: impl FnMut(usize, [PixelLanes; 3])) {
     let Some(first) = groups.first() else { return };
     // The next group's places are found before this one's texels are read: neither waits for the other.
-    let mut next = Spots::new(surface, first);
+    let mut levels = TwoLevels::new(surface, 0);
+    let mut next = Spots::new(surface, &mut levels, first);
     for (index, group) in groups.iter().enumerate() {
-        let spots = next;
-        next = Spots::new(surface, groups.get(index + 1).unwrap_or(group));
+        let (spots, of_spots) = (next, levels);
+        next = Spots::new(surface, &mut levels, groups.get(index + 1).unwrap_or(group));
         let is_blended = spots.blend.simd_gt(PixelLanes::ZERO).any();
-        let color = match spots.levels {
-            None => on_several_levels(surface, group),
-            Some([fine, coarse]) if is_blended => mixed(&fine.color(surface), &coarse.color(surface), spots.blend),
-            Some([fine, _]) => fine.color(surface),
+        let [fine, coarse] = [0, 1].map(|i| (of_spots.levels[i], &spots.spots[i]));
+        let color = |(level, spot): (&Level, &Spot)| spot.color(level);
+        let color = match (spots.is_same, is_blended) {
+            (false, _) => on_several_levels(surface, group),
+            (true, true) => mixed(&color(fine), &color(coarse), spots.blend),
+            (true, false) => color(fine),
         };
         sink(index, color);
     }
 }
 
+/// A level and the next coarser one, or itself where there is none, and their texels a repeat: neighbouring pixels have the
+/// same.
+#[derive(Clone, Copy)]
+struct TwoLevels<'a> {
+    index: usize,
+    levels: [&'a Level; 2],
+    texels: [[f32; 2]; 2],
+}
+
+impl<'a> TwoLevels<'a> {
+    fn new(surface: &'a Surface, index: usize) -> Self {
+        let indices = [index, (index + 1).min(surface.levels.len() - 1)];
+        let levels = indices.map(|index| &surface.levels[index]);
+        Self { index, levels, texels: indices.map(|index| surface.texels_per_repeat(index)) }
+    }
+}
+
 impl Spots {
+    /// Sets `levels` to the first pixel's.
     #[inline(always)]
-    fn new(surface: &Surface, &[u, v, size]: &[PixelLanes; 3]) -> Self {
-        let last = surface.levels.len() - 1;
-        let (levels, blend) = levels_of_sizes(size, last);
-        let level = levels.as_array()[0] as usize;
-        let is_same = levels.simd_eq(i32x8::splat(level as i32)).all();
-        let at = |level: usize| Spot::new(surface, level, [u, v]);
-        Self { levels: is_same.then(|| [at(level), at(last.min(level + 1))]), blend }
+    fn new<'a>(surface: &'a Surface, levels: &mut TwoLevels<'a>, &[u, v, size]: &[PixelLanes; 3]) -> Self {
+        let (numbers, blend) = levels_of_sizes(size, surface.levels.len() - 1);
+        let index = numbers.as_array()[0];
+        if index as usize != levels.index {
+            *levels = TwoLevels::new(surface, index as usize);
+        }
+        let is_same = numbers.simd_eq(i32x8::splat(index)).all();
+        Self { is_same, spots: levels.texels.map(|texels| Spot::new(texels, [u, v])), blend }
     }
 }
 
@@ -70,7 +91,7 @@ fn on_several_levels(surface: &Surface, &[u, v, size]: &[PixelLanes; 3]) -> [Pix
         let is_fine = at(index as i32);
         let is_coarse = at(index as i32 - 1) & blend.simd_gt(PixelLanes::ZERO);
         if (is_fine | is_coarse).any() {
-            let found = Spot::new(surface, index, [u, v]).color(surface);
+            let found = Spot::new(surface.texels_per_repeat(index), [u, v]).color(&surface.levels[index]);
             fine = [0, 1, 2].map(|c| is_fine.select(found[c], fine[c]));
             coarse = [0, 1, 2].map(|c| is_coarse.select(found[c], coarse[c]));
         }
@@ -99,31 +120,30 @@ fn levels_of_sizes(size: PixelLanes, last: usize) -> (i32x8, PixelLanes) {
 #[inline]
 pub fn longest_side(surface: &Surface, differences: &Differences) -> PixelLanes {
     let texels = surface.texels_per_repeat(0);
-    let squared = |derivative: [PixelLanes; 2]| {
-        let [u, v] = shortened(derivative);
+    let Differences { dx, dy } = differences.shortened();
+    let squared = |[u, v]: [PixelLanes; 2]| {
         let (u, v) = (u * texels[0], v * texels[1]);
         u * u + v * v
     };
-    squared(differences.dx).fast_max(squared(differences.dy)).sqrt()
+    squared(dx).fast_max(squared(dy)).sqrt()
 }
 
 impl Spot {
     #[inline(always)]
-    fn new(surface: &Surface, level: usize, place: [PixelLanes; 2]) -> Self {
-        let texels = surface.texels_per_repeat(level);
+    fn new(texels: [f32; 2], place: [PixelLanes; 2]) -> Self {
         let at = [place[0] * texels[0] - 0.5, place[1] * texels[1] - 0.5];
         let floors = [at[0].floor(), at[1].floor()];
         let bound = PixelLanes::splat(FARTHEST);
         let corner = |floor: PixelLanes| floor.fast_max(-bound).fast_min(bound).fast_trunc_int();
         let part = [at[0] - floors[0], at[1] - floors[1]];
-        Self { level, corner: [corner(floors[0]), corner(floors[1])], part }
+        Self { corner: [corner(floors[0]), corner(floors[1])], part }
     }
 
     /// Interpolated between the four texels around each place.
     #[inline(always)]
-    fn color(&self, surface: &Surface) -> [PixelLanes; 3] {
+    fn color(&self, level: &Level) -> [PixelLanes; 3] {
         let [x, y] = self.corner;
-        let [red_green, blue] = corners(&surface.levels[self.level], x, y);
+        let [red_green, blue] = corners(level, x, y);
         let part = join([self.part[1], self.part[1]]);
         let mix = |channel: fn(u32x16) -> LineLanes, Corners { above, below }: Corners| {
             let [above, below] = [channel(above), channel(below)];

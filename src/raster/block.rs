@@ -40,10 +40,10 @@ impl<'a> QuadBlock<'a> {
             Some(second) => (second, second.coverage),
             None => (first, [0; 4]),
         };
-        let [a, b, c, d] = first.coverage;
-        let [e, f, g, h] = coverage;
+        let coverage = [first.coverage, coverage].map(|bytes| u64::from(u32::from_le_bytes(bytes)));
+        let coverage = (coverage[0] | coverage[1] << 32).to_le_bytes();
         let origin = [first, second].map(|quad| [0, 1].map(|i| tile[i] + i32::from(quad.origin[i])));
         let planes = [first, second].map(|quad| &planes[quad.triangle as usize]);
-        QuadPair::new(material, origin, [a, b, c, d, e, f, g, h], planes)
+        QuadPair::new(material, origin, coverage, planes)
     }
 }

@@ -117,7 +117,9 @@ impl<'a> QuadPair<'a> {
     #[must_use]
     #[inline(always)]
     pub fn is_whole(&self) -> bool {
-        !self.coverage.contains(&0)
+        // A byte is at most 8, so nothing is carried to the next one.
+        let ones = u64::from_le_bytes([0x7f; 8]) + u64::from_le_bytes(self.coverage);
+        ones & !u64::from_le_bytes([0x7f; 8]) == !u64::from_le_bytes([0x7f; 8])
     }
 
     /// The pixel centres on the screen, in pixels: x, y.

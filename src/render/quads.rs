@@ -75,7 +75,7 @@ impl<'a> QuadShader<'a> {
     }
 
     /// Where the rays of a pair hit the relief, in repeats, and the differences there.
-    #[inline]
+    #[inline(always)]
     pub(super) fn hits(&self, ground: &Ground, pair: &QuadPair) -> ([PixelLanes; 2], Differences) {
         let offset = ground.field.map_or([PixelLanes::ZERO; 2], |field| {
             let reach = ground.reach(pair);

@@ -104,9 +104,8 @@ impl Level {
     /// The words of a row of the endless pattern, all planes.
     #[inline(always)]
     pub(crate) fn row(&self, y: i32) -> &[u32] {
-        let pitch = self.stride() * self.num_planes;
-        let start = wrap_index(self.wrap, y, self.height) * pitch;
-        &self.words[start..start + pitch]
+        let start = self.row_start(y);
+        &self.words[start..start + self.pitch()]
     }
 
     /// Where a run of up to [`APRON`] texels that begins at column `x` of the endless pattern starts within a plane.
@@ -118,10 +117,26 @@ impl Level {
         }
     }
 
+    /// Words of a row, all planes.
+    #[inline(always)]
+    pub(crate) fn pitch(&self) -> usize {
+        self.stride() * self.num_planes
+    }
+
+    /// All words from a row of the endless pattern on; `None` unless so many rows follow each other.
+    #[inline(always)]
+    pub(crate) fn rows(&self, first: i32, num: usize) -> Option<&[u32]> {
+        let first = match self.wrap {
+            Wrap::Clamp => usize::try_from(first).ok()?,
+            Wrap::Repeat | Wrap::Mirror => wrap_index(self.wrap, first, self.height),
+        };
+        (first + num <= self.height).then(|| &self.words[first * self.pitch()..])
+    }
+
     /// Where a row of the endless pattern starts among all words.
     #[inline(always)]
     pub(crate) fn row_start(&self, y: i32) -> usize {
-        wrap_index(self.wrap, y, self.height) * self.stride() * self.num_planes
+        wrap_index(self.wrap, y, self.height) * self.pitch()
     }
 
     /// Where the run of up to [`APRON`] texels that begins at a column and row of the endless pattern starts among all words.

@@ -1,6 +1,6 @@
 //! What a sweep must know of its pixels, eight in the lanes of a vector.
 
-use crate::filter::footprint::{Differences, Footprint, bounded_place, shortened};
+use crate::filter::footprint::{Differences, Footprint, bounded_place};
 use crate::simd::PixelLanes;
 
 /// Least half axis in texels: what a magnified pixel covers is that much at least, so that no division overflows.
@@ -31,7 +31,7 @@ impl PixelFootprints {
     /// The pixels around `center` with the given derivatives, which are shortened to 16 repeats.
     #[must_use]
     pub fn new(center: &[PixelLanes; 2], differences: &Differences, displacement: [PixelLanes; 2]) -> Self {
-        let (dx, dy) = (shortened(differences.dx), shortened(differences.dy));
+        let Differences { dx, dy } = differences.shortened();
         Self { center: bounded_place(*center), dx, dy, displacement }
     }
 
