@@ -36,21 +36,24 @@ fn beyond(places: i32x8, most: i32) -> i32x8 {
     places | (i32x8::splat(most) - places)
 }
 
-/// All places pick from the same columns: those 0 to 15, and rows 0 to 31, from the first word on. `None` where rows do not
-/// follow each other in memory.
+/// All places pick from the same columns: those 0 to 15, and rows 0 to 31, from the first word on. `None` where rows are
+/// repeated.
 #[inline(always)]
 fn picked(level: &Level, first: [i32; 2], columns: u32x8, rows: u32x8) -> Option<[Corners; 2]> {
     let numbers = join_words([columns, columns + 1]);
     let needed = (u32x8::splat(3) << rows).to_array().into_iter().fold(0, |all, bits| all | bits);
     let top = needed.trailing_zeros();
     let num_rows = 32 - needed.leading_zeros() - top;
-    let words = &level.rows(first[1] + top as i32, num_rows as usize)?[level.run_start(first[0])..];
+    let (words, pitch) = (level.words(), level.pitch());
+    let mut start = level.start_of_rows(first[1] + top as i32, num_rows as usize)?;
+    let column = level.run_start(first[0]);
     // Rows down to the one of each place.
     let mut down = join_words([rows, rows]) - u32x16::splat(top);
     let mut corners = [Corners::default(); 2];
-    for row in words.chunks(level.pitch()).take(num_rows as usize) {
+    for _ in 0..num_rows {
         let places = [down.simd_eq(u32x16::ZERO), down.simd_eq(u32x16::splat(u32::MAX))];
-        take(row, level.stride(), numbers, places, &mut corners);
+        take(&words[start + column..], level.stride(), numbers, places, &mut corners);
+        start = if start + pitch == words.len() { 0 } else { start + pitch };
         down -= u32x16::ONE;
     }
     Some(corners)

@@ -123,14 +123,12 @@ impl Level {
         self.stride() * self.num_planes
     }
 
-    /// All words from a row of the endless pattern on; `None` unless so many rows follow each other.
+    /// Where a row of the endless pattern starts among all words. `None` unless so many rows follow each other in memory, or
+    /// by beginning again after the last one.
     #[inline(always)]
-    pub(crate) fn rows(&self, first: i32, num: usize) -> Option<&[u32]> {
-        let first = match self.wrap {
-            Wrap::Clamp => usize::try_from(first).ok()?,
-            Wrap::Repeat | Wrap::Mirror => wrap_index(self.wrap, first, self.height),
-        };
-        (first + num <= self.height).then(|| &self.words[first * self.pitch()..])
+    pub(crate) fn start_of_rows(&self, first: i32, num: usize) -> Option<usize> {
+        let is_within = || usize::try_from(first).is_ok_and(|first| first + num <= self.height);
+        (self.wrap != Wrap::Clamp || is_within()).then(|| self.row_start(first))
     }
 
     /// Where a row of the endless pattern starts among all words.
