@@ -42,6 +42,15 @@ pub fn sum(lanes: f32x8) -> f32 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
+/// [`sum`] of each of four vectors.
+#[must_use]
+#[inline(always)]
+pub fn sums(vectors: [f32x8; 4]) -> [f32; 4] {
+    let halves: [[f32x4; 2]; 4] = wide::bytemuck::cast(vectors);
+    let [a, b, c, d] = f32x4::transpose(halves.map(|[near, far]| near + far));
+    ((a + c) + (b + d)).to_array()
+}
+
 /// All bits of the lanes whose bit is set.
 #[must_use]
 #[inline(always)]
@@ -60,6 +69,13 @@ pub fn low_half(words: u32x8) -> f32x8 {
 #[must_use]
 pub fn high_half(words: u32x8) -> f32x8 {
     f32x8::from_i32x8(as_signed(words >> 16_u32))
+}
+
+/// The number of each lane.
+#[must_use]
+#[inline(always)]
+pub fn line_indices() -> LineLanes {
+    LineLanes::new(std::array::from_fn(|i| i as f32))
 }
 
 /// [`low_half`] of sixteen words.

@@ -2,7 +2,7 @@
 
 use crate::filter::{Filtered, unpack_normals};
 use crate::simd::{
-    LineLanes, TexelLanes, halves, high_half, high_halves, join, join_words, low_half, low_halves, split, sum, u32x16,
+    LineLanes, TexelLanes, halves, high_half, high_halves, join, join_words, low_half, low_halves, split, sum, sums, u32x16,
 };
 use crate::texture::Level;
 
@@ -44,18 +44,17 @@ impl<const HAS_NORMALS: bool> WideSums<HAS_NORMALS> {
     /// The mean; `None` without a weight.
     #[inline(always)]
     pub(super) fn mean(&self) -> Option<Filtered> {
-        let weight = sum_of_all(self.weight);
+        let sums_of = |[x, y, z]: [LineLanes; 3]| {
+            let of_halves = [self.weight, x, y, z].map(split).map(|[a, b]| a + b);
+            let [weight, x, y, z] = sums(of_halves);
+            (weight, [x, y, z])
+        };
+        let (weight, color) = sums_of(self.color);
         let share = 1.0 / weight;
-        let mean = |lanes: &[LineLanes; 3]| [0, 1, 2].map(|i| sum_of_all(lanes[i]) * share);
-        let normal = if HAS_NORMALS { mean(&self.normal) } else { [0.0, 0.0, 1.0] };
-        (weight > 0.0).then(|| Filtered { color: mean(&self.color), normal })
+        let mean = |sums: [f32; 3]| sums.map(|sum| sum * share);
+        let normal = if HAS_NORMALS { mean(sums_of(self.normal).1) } else { [0.0, 0.0, 1.0] };
+        (weight > 0.0).then(|| Filtered { color: mean(color), normal })
     }
-}
-
-#[inline(always)]
-fn sum_of_all(lanes: LineLanes) -> f32 {
-    let [a, b] = split(lanes);
-    sum(a + b)
 }
 
 /// Eight texels at a time.

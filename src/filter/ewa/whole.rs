@@ -5,13 +5,19 @@ use super::sums::WideSums;
 use crate::filter::texel_set::lane_columns;
 use crate::filter::{Ellipse, Filtered, Footprint, MAX_TEXELS, isotropic, level_within_budget};
 use crate::settings::{Formulas, Settings};
-use crate::simd::{LineLanes, TexelLanes, join};
+use crate::simd::{LineLanes, from_words, join, join_words, line_indices, pick, u32x8, u32x16, words};
 use crate::texture::{APRON, Level, Surface};
 use std::f32::consts::FRAC_1_PI;
 
 /// Shorter half axis of the ellipse in texels of the level that is taken, at least: the Gaussian's standard deviation, half
 /// of that, is then 0.7 texels, below which their grid undersamples it. At most twice as much.
 const LEAST_SHORT: f32 = 1.4;
+
+/// Farthest texel from the pattern's first: numbers up to there, and their neighbours, fit 32 bits.
+const FARTHEST: f32 = (1 << 30) as f32;
+
+/// Rows whose places are found at once.
+const ROWS: usize = 16;
 
 /// The mean of all texels of the ellipse, and how many were in the batches that were read: one pass over the rows of the
 /// coarsest level on which the Gaussian is sampled well, or of the base level where `texel_budget` is 0. The normal is left
@@ -38,6 +44,7 @@ pub fn mean(surface: &Surface, footprint: &Footprint, settings: &Settings, with_
 }
 
 /// The level and the ellipse in its texels.
+#[inline(always)]
 pub(super) fn choose_level(surface: &Surface, footprint: &Footprint, settings: &Settings) -> (usize, Ellipse) {
     let Settings { formulas, max_anisotropy, texel_budget, .. } = *settings;
     if texel_budget == 0 || formulas == Formulas::Printed {
@@ -85,30 +92,40 @@ fn scan<const HAS_NORMALS: bool, const IS_WIDE: bool>(
     if !(half_width.max(half_height) < 1e6 && f > 0.0) {
         return (None, 0);
     }
-    let mut sums = WideSums::<HAS_NORMALS>::default();
     // Rows of equal length, so that no branch depends on a row, and two rows at a time: what lies outside weighs nothing.
     let num = (half_width * 0.25) as i32 + 1;
+    let num_rows = 2 * (half_height as i32 + 1);
+    let first = (y0 - half_height).clamp(-FARTHEST, FARTHEST).ceil() as i32;
+    let end = first + num_rows;
+    let mut sums = WideSums::<HAS_NORMALS>::default();
     let limit = LineLanes::splat(cut * cut);
     let [a, b, c] = [a, b, c].map(|coefficient| coefficient * inverse_f);
-    let rows = (y0 - half_height).ceil() as i32..=(y0 + half_height).floor() as i32;
-    let num_read = rows.clone().count() as u64 * num as u64 * 8;
-    for y in rows.step_by(2) {
-        let v = [0.0, 1.0].map(|row| y as f32 + row - y0);
-        let starts = v.map(|v| (x0 - s * v - half_width).ceil());
-        let u = join(starts.map(|start| lane_columns(0) + (start - x0)));
-        let linear = join(v.map(|v| TexelLanes::splat(b * v)));
-        let constant = join(v.map(|v| TexelLanes::splat(c * v * v)));
-        let rows = [level.row_start(y), level.row_start(y + 1)];
-        // What the apron repeats lies in one piece.
-        for first in (0..num).step_by(APRON / 8) {
-            let runs = [0, 1].map(|i| rows[i] + level.run_start(starts[i] as i32 + 8 * first));
-            for i in first..num.min(first + (APRON / 8) as i32) {
-                let u = u + (8 * i) as f32;
-                let r2 = ((u * a + linear) * u + constant).fast_max(LineLanes::ZERO);
-                let weight = gaussian::<IS_WIDE>(r2.fast_min(limit)) & r2.simd_le(limit);
-                sums.add_runs(level, runs.map(|run| run + 8 * (i - first) as usize), weight);
+    let columns = join([lane_columns(0); 2]);
+    // What rows need is found for sixteen of them at once.
+    for first in (first..end).step_by(ROWS) {
+        let v = line_indices() + (first as f32 - y0);
+        let starts = (LineLanes::splat(x0 - half_width) - v * s).ceil();
+        let (from, linear, constant) = (starts - x0, v * b, v * v * c);
+        let bound = LineLanes::splat(FARTHEST);
+        let starts = starts.fast_max(-bound).fast_min(bound).fast_trunc_int();
+        let mut two = join_words([u32x8::ZERO, u32x8::ONE]);
+        for i in (0..(end - first).min(ROWS as i32)).step_by(2) {
+            let of_two = |lanes: LineLanes| from_words(pick(words(lanes), two));
+            let (u, linear, constant) = (of_two(from) + columns, of_two(linear), of_two(constant));
+            let starts = [0, 1].map(|row| starts.as_array()[i as usize + row]);
+            let rows = [level.row_start(first + i), level.row_start(first + i + 1)];
+            // What the apron repeats lies in one piece.
+            for block in (0..num).step_by(APRON / 8) {
+                let runs = [0, 1].map(|i| rows[i] + level.run_start(starts[i] + 8 * block));
+                for j in block..num.min(block + (APRON / 8) as i32) {
+                    let u = u + (8 * j) as f32;
+                    let r2 = ((u * a + linear) * u + constant).fast_max(LineLanes::ZERO);
+                    let weight = gaussian::<IS_WIDE>(r2.fast_min(limit)) & r2.simd_le(limit);
+                    sums.add_runs(level, runs.map(|run| run + 8 * (j - block) as usize), weight);
+                }
             }
+            two += u32x16::splat(2);
         }
     }
-    (sums.mean(), num_read)
+    (sums.mean(), num_rows as u64 * num as u64 * 8)
 }

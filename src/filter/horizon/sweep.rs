@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::kernel::Kernel;
 use super::walk::Walk;
 use crate::filter::unpack_normals;
-use crate::simd::{LineBlend, LineLanes, TexelLanes, halves, high_halves, join, low_halves, pick_words};
+use crate::simd::{LineBlend, LineLanes, TexelLanes, halves, high_halves, join, line_indices, low_halves, pick_words};
 use crate::texture::FULL_F32;
 
 /// Most lines of a grid.
@@ -82,10 +82,6 @@ pub(super) fn load(row: &Row, at: usize) -> TexelLanes {
 
 pub(super) fn lane_indices() -> TexelLanes {
     TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
-}
-
-fn line_indices() -> LineLanes {
-    LineLanes::new(std::array::from_fn(|i| i as f32))
 }
 
 impl<const CHANNELS: usize> Profile<CHANNELS> {
