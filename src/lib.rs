@@ -34,17 +34,18 @@
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
-//! A frame in a buffer of one's own:
+//! A frame of bytes, as windows and video encoders take them:
 //!
 //! ```
-//! use basrelief::{Settings, render, scene};
+//! use basrelief::{Frame, Renderer, Settings, scene};
 //!
-//! let mut buffer = vec![0_u8; 160 * 90 * 4];
-//! let frame = render(scene::builtin(), Settings { width: 160, height: 90, ..Settings::default() })?;
-//! for (pixel, rgba) in buffer.chunks_exact_mut(4).zip(frame.to_rgba8()) {
-//!     pixel.copy_from_slice(&rgba);
-//! }
-//! # assert_eq!(buffer[3], 255);
+//! let settings = Settings { width: 160, height: 90, ..Settings::default() };
+//! let mut renderer = Renderer::new(scene::builtin(), settings)?;
+//! // Bytes of sRGB; a quarter of the memory that linear light takes. Draw into it as often as you like.
+//! let mut frame = Frame::<[u8; 4]>::default();
+//! renderer.render_into(&mut frame, &|| 0.0);
+//! let bytes: &[u8] = frame.pixels.as_flattened();
+//! # assert_eq!((bytes.len(), bytes[3]), (160 * 90 * 4, 255));
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!

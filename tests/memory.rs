@@ -3,7 +3,8 @@
 mod common;
 
 use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Camera, Filter, Material, Mesh, Renderer, Scene, Settings};
+use basrelief::frame::Pixel;
+use basrelief::{Camera, Filter, Frame, Material, Mesh, Renderer, Scene, Settings};
 use common::{Random, flat_surface, floor_scene};
 use glam::Vec3;
 use peak_alloc::PeakAlloc;
@@ -26,6 +27,9 @@ fn peak<T>(run: impl FnOnce() -> T) -> (usize, T) {
     (HEAP.peak_usage() - before, result)
 }
 
+/// A pixel in linear light: 16 bytes of the frame itself.
+type Linear = [f32; 4];
+
 /// A grid of `2 * side^2` triangles that fills the frame, all of them seen.
 fn grid(side: u32) -> Scene {
     let num = side + 1;
@@ -38,10 +42,11 @@ fn grid(side: u32) -> Scene {
 }
 
 /// The first frame of a renderer, which fills its buffers, on two threads.
-fn frame(scene: Scene, settings: Settings) -> usize {
+fn frame<P: Pixel>(scene: Scene, settings: Settings) -> usize {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
     let mut renderer = Renderer::new(scene, settings).expect("a valid scene");
-    pool.install(|| peak(|| renderer.render()).0)
+    let mut frame = Frame::<P>::default();
+    pool.install(|| peak(|| renderer.render_into(&mut frame, &|| 0.0)).0)
 }
 
 /// A surface without normals, as the program makes them where there is no light.
@@ -64,17 +69,21 @@ fn surface(size: u32, relief_depth: f32) -> Surface {
 fn memory_is_bounded() {
     let settings = Settings { width: 1024, height: 1024, filter: Filter::Trilinear, ..Settings::default() };
     let num_triangles = 2 * 400 * 400;
-    let few = frame(grid(1), settings.clone());
-    let many = frame(grid(400), settings.clone());
+    let few = frame::<Linear>(grid(1), settings.clone());
+    let many = frame::<Linear>(grid(400), settings.clone());
     let per_triangle = (many - few) as f64 / f64::from(num_triangles);
     println!("{per_triangle:.1} bytes a triangle beyond the mesh");
     assert!(per_triangle <= 64.0, "{per_triangle} bytes a triangle");
 
     let floor = || floor_scene(flat_surface(16, 16, Wrap::Repeat, 1), 1.0);
-    let pixels = frame(floor(), Settings { width: 2048, height: 2048, ..settings });
-    let per_sample = pixels.saturating_sub(CONSTANT) as f64 / f64::from(4 * 2048 * 2048);
-    println!("{per_sample:.1} bytes a pixel and sample, of four");
-    assert!(per_sample <= 12.0, "{per_sample} bytes a pixel and sample");
+    let settings = Settings { width: 2048, height: 2048, ..settings };
+    for (msaa, is_linear, most) in [(1, false, 12.0), (1, true, 16.1), (4, false, 12.0), (4, true, 12.0)] {
+        let settings = Settings { msaa, ..settings.clone() };
+        let bytes = if is_linear { frame::<Linear>(floor(), settings) } else { frame::<[u8; 4]>(floor(), settings) };
+        let per_sample = bytes.saturating_sub(CONSTANT) as f64 / f64::from(msaa * 2048 * 2048);
+        println!("{per_sample:.1} bytes a pixel and sample, of {msaa}, linear: {is_linear}");
+        assert!(per_sample <= most, "{per_sample} bytes a pixel and sample");
+    }
 
     for (name, relief_depth) in [("flat", 0.0), ("relief", 0.1)] {
         let (most, surface) = peak(|| surface(1024, relief_depth));
