@@ -326,6 +326,19 @@ fn tile_size_and_threads_do_not_show() {
     }
 }
 
+/// What is hidden may be left out: how much that is depends on the order.
+#[test]
+fn order_of_triangles_does_not_show_where_depths_differ() {
+    let settings = Settings { msaa: 1, ..settings(101, 71) };
+    for num in [40, 700, 3000] {
+        let scene = soup(num, &settings);
+        let mut reversed = scene.clone();
+        reversed.meshes.reverse();
+        reversed.meshes.iter_mut().for_each(|mesh| mesh.triangles.reverse());
+        assert!(bits(&drawn(&scene, &settings).0) == bits(&drawn(&reversed, &settings).0), "{num} triangles");
+    }
+}
+
 #[test]
 fn order_does_not_depend_on_threads() {
     let settings = settings(200, 150);

@@ -24,7 +24,15 @@ pub(super) struct VisibilityBuffer {
     num_rows: usize,
     inverse_w: Vec<f32x8>,
     triangles: Vec<u32x8>,
+    /// What is farther than this is hidden, as of the last time it was looked for: [`FARTHEST`] while a sample sees nothing.
+    hidden: f32,
 }
+
+/// Triangles of a tile after which what they hide is looked for, again after twice as many, and so on.
+const FIRST_LOOK: usize = 32;
+
+/// What 1 / w may be off by as a sample has it and as a corner has it, as a share of the plane's terms.
+const ROUNDING: f32 = 1.0 / (1 << 20) as f32;
 
 impl VisibilityBuffer {
     /// Draws the triangles of `list` on the pixels of `rect`.
@@ -36,6 +44,14 @@ impl VisibilityBuffer {
             // Pieces of a triangle follow each other.
             if (triangle.mesh, triangle.triangle) != last {
                 (last, last_index) = ((triangle.mesh, triangle.triangle), index as u32);
+            }
+            if index >= FIRST_LOOK {
+                if index.is_power_of_two() {
+                    self.hidden = self.farthest();
+                }
+                if self.hides(triangle) {
+                    continue;
+                }
             }
             self.draw_triangle::<S>(triangle, last_index, rect);
         }
@@ -52,6 +68,27 @@ impl VisibilityBuffer {
         self.inverse_w.resize(num, f32x8::splat(FARTHEST));
         self.triangles.clear();
         self.triangles.resize(num, u32x8::splat(NONE));
+        self.hidden = FARTHEST;
+    }
+
+    /// The least 1 / w that is stored.
+    #[inline(never)]
+    fn farthest(&self) -> f32 {
+        let least = self.inverse_w.iter().fold(f32x8::splat(f32::INFINITY), |least, row| least.fast_min(*row));
+        least.to_array().into_iter().fold(f32::INFINITY, f32::min)
+    }
+
+    /// Whether nothing of a triangle can be seen; it may say no where that is so.
+    #[inline(always)]
+    fn hides(&self, triangle: &ScreenTriangle) -> bool {
+        let [dx, dy, constant] = triangle.depth;
+        // A plane is nearest at a corner.
+        let nearest = triangle.corners.map(|corner| {
+            let [x, y] = corner.map(|c| c as f32 * (1.0 / 256.0));
+            let (along_x, along_y) = (x * dx, y * dy);
+            along_x + along_y + constant + (along_x.abs() + along_y.abs() + constant.abs()) * ROUNDING
+        });
+        nearest.into_iter().all(|nearest| nearest < self.hidden)
     }
 
     /// Takes back what whole lane vectors drew to the right of the frame.
