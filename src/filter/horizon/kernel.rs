@@ -3,7 +3,7 @@
 use super::sweep::{Grid, Profile, Row, lane_indices, load};
 use crate::filter::Filtered;
 use crate::shade::LocalLights;
-use crate::simd::{PixelLanes, TexelLanes, exp_negative, sum};
+use crate::simd::{PixelLanes, TexelLanes, exp_negative, sums};
 use glam::Vec3;
 
 /// A pixel's ellipse on the lines of a patch; see [`Kernels`](super::frame::Kernels).
@@ -101,11 +101,15 @@ impl Totals {
 
     /// The mean; `None` where no more was added than the rounding of [`integral`]'s differences makes.
     pub(super) fn mean(&self, is_lit: bool) -> Option<Filtered> {
-        let weight = sum(self.weight);
-        let mean = |lanes: [TexelLanes; 3]| lanes.map(|lanes| sum(lanes) / weight);
-        let normal = if is_lit { mean(self.normal) } else { [0.0, 0.0, 1.0] };
+        let sums_of = |[x, y, z]: [TexelLanes; 3]| {
+            let [weight, x, y, z] = sums([self.weight, x, y, z]);
+            (weight, [x, y, z])
+        };
+        let (weight, color) = sums_of(self.color);
+        let mean = |sums: [f32; 3]| sums.map(|sum| sum / weight);
+        let normal = if is_lit { mean(sums_of(self.normal).1) } else { [0.0, 0.0, 1.0] };
         // A difference of 0 may be rounded below.
-        (weight > LEAST_WEIGHT).then(|| Filtered { color: mean(self.color).map(|c| c.max(0.0)), normal })
+        (weight > LEAST_WEIGHT).then(|| Filtered { color: mean(color).map(|c| c.max(0.0)), normal })
     }
 }
 

@@ -198,10 +198,12 @@ impl Patches<'_> {
             layout.run(lit, kernels, lights, totals)
         };
         for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
-            *found = totals.mean(!lights.is_empty()).unwrap_or_else(|| {
+            // Number by number, so that whoever reads one does not wait for all.
+            let mean = totals.mean(!lights.is_empty()).unwrap_or_else(|| {
                 let pixels = &self.pixels[usize::from(pick / 8)];
                 isotropic::bilinear(self.surface, index, pixels.footprint(usize::from(pick % 8)).center)
             });
+            (found.color, found.normal) = (mean.color, mean.normal);
         }
         Some(num_rows)
     }
