@@ -25,9 +25,11 @@ pub(super) fn corners(level: &Level, x: i32x8, y: i32x8) -> [Corners; 2] {
     }
     let first = [x.as_array()[0] - BEFORE, y.as_array()[0] - ABOVE];
     let (columns, rows) = (x - i32x8::splat(first[0]), y - i32x8::splat(first[1]));
-    let is_near = (beyond(columns, 14) | beyond(rows, 30)).to_bitmask() == 0;
-    let near = if is_near { picked(level, first, simd::as_unsigned(columns), simd::as_unsigned(rows)) } else { None };
-    near.unwrap_or_else(|| row_by_row(level, x, y))
+    if (beyond(columns, 14) | beyond(rows, 30)).to_bitmask() == 0 {
+        picked(level, first, simd::as_unsigned(columns), simd::as_unsigned(rows))
+    } else {
+        row_by_row(level, x, y)
+    }
 }
 
 /// A sign for every place that is not within 0 to `most`.
@@ -36,27 +38,23 @@ fn beyond(places: i32x8, most: i32) -> i32x8 {
     places | (i32x8::splat(most) - places)
 }
 
-/// All places pick from the same columns: those 0 to 15, and rows 0 to 31, from the first word on. `None` where rows are
-/// repeated.
+/// All places pick from the same columns: those 0 to 15, and rows 0 to 31, from the first word on.
 #[inline(always)]
-fn picked(level: &Level, first: [i32; 2], columns: u32x8, rows: u32x8) -> Option<[Corners; 2]> {
+fn picked(level: &Level, first: [i32; 2], columns: u32x8, rows: u32x8) -> [Corners; 2] {
     let numbers = join_words([columns, columns + 1]);
     let needed = (u32x8::splat(3) << rows).to_array().into_iter().fold(0, |all, bits| all | bits);
     let top = needed.trailing_zeros();
     let num_rows = 32 - needed.leading_zeros() - top;
-    let (words, pitch) = (level.words(), level.pitch());
-    let mut start = level.start_of_rows(first[1] + top as i32, num_rows as usize)?;
-    let column = level.run_start(first[0]);
+    let (mut starts, column) = (level.row_starts(first[1] + top as i32), level.run_start(first[0]));
     // Rows down to the one of each place.
     let mut down = join_words([rows, rows]) - u32x16::splat(top);
     let mut corners = [Corners::default(); 2];
     for _ in 0..num_rows {
         let places = [down.simd_eq(u32x16::ZERO), down.simd_eq(u32x16::splat(u32::MAX))];
-        take(&words[start + column..], level.stride(), numbers, places, &mut corners);
-        start = if start + pitch == words.len() { 0 } else { start + pitch };
+        take(&level.words()[starts.next() + column..], level.stride(), numbers, places, &mut corners);
         down -= u32x16::ONE;
     }
-    Some(corners)
+    corners
 }
 
 /// Of a row's words, those with the given numbers, for the places whose row, or whose next row, it is.

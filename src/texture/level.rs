@@ -123,12 +123,10 @@ impl Level {
         self.stride() * self.num_planes
     }
 
-    /// Where a row of the endless pattern starts among all words. `None` unless so many rows follow each other in memory, or
-    /// by beginning again after the last one.
+    /// Where the rows of the endless pattern from `first` on start among all words.
     #[inline(always)]
-    pub(crate) fn start_of_rows(&self, first: i32, num: usize) -> Option<usize> {
-        let is_within = || usize::try_from(first).is_ok_and(|first| first + num <= self.height);
-        (self.wrap != Wrap::Clamp || is_within()).then(|| self.row_start(first))
+    pub(crate) fn row_starts(&self, first: i32) -> RowStarts<'_> {
+        RowStarts { level: self, row: first, start: self.row_start(first), pitch: self.pitch() }
     }
 
     /// Where a row of the endless pattern starts among all words.
@@ -195,6 +193,30 @@ impl Level {
     /// Bytes that the level takes.
     pub(crate) fn num_bytes(&self) -> usize {
         self.words.len() * 4
+    }
+}
+
+/// See [`Level::row_starts`].
+pub(crate) struct RowStarts<'a> {
+    level: &'a Level,
+    row: i32,
+    start: usize,
+    pitch: usize,
+}
+
+impl RowStarts<'_> {
+    /// Where the next row starts.
+    #[inline(always)]
+    pub(crate) fn next(&mut self) -> usize {
+        let start = self.start;
+        self.row = self.row.wrapping_add(1);
+        self.start = match self.level.wrap {
+            Wrap::Clamp => self.level.row_start(self.row),
+            // Begins again after the last one.
+            Wrap::Repeat | Wrap::Mirror if start + self.pitch == self.level.words.len() => 0,
+            Wrap::Repeat | Wrap::Mirror => start + self.pitch,
+        };
+        start
     }
 }
 

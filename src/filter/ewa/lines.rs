@@ -9,7 +9,7 @@ use super::sums::WideSums;
 use crate::filter::{Filtered, PixelFootprints};
 use crate::settings::Settings;
 use crate::simd::{LineLanes, PixelLanes, i32x8, lanes, mask};
-use crate::texture::{APRON, Level, Surface};
+use crate::texture::{APRON, Level, RowStarts, Surface};
 
 /// Variance of `exp(-2 r^2)` over the unit disc along a line through its middle.
 const VARIANCE: f32 = 0.171_7;
@@ -135,13 +135,14 @@ impl Lines {
             let num_more = floor(ends[0].max(ends[1]) + width) - lowest - 2;
             let y = u * slope + (y0 - lowest as f32);
             let column = level.run_start(first + block);
-            let near = NearRows { level, column, lowest, y, inverse_width, weight };
+            let starts = level.row_starts(lowest);
+            let mut near = NearRows { level, column, starts, y, inverse_width, weight };
             // Three rows are the rule: no branch to foretell.
-            for row in 0..3 {
-                near.add(row, &mut sums);
+            for _ in 0..3 {
+                near.add_next(&mut sums);
             }
-            for row in 3..3 + num_more {
-                near.add(row, &mut sums);
+            for _ in 0..num_more {
+                near.add_next(&mut sums);
             }
             num_rows += 3 + num_more.max(0) as u64;
         }
@@ -155,8 +156,8 @@ struct NearRows<'a> {
     level: &'a Level,
     /// Where the first column's texels start in a row.
     column: usize,
-    lowest: i32,
-    /// The line's place in each column, in rows from the lowest one.
+    starts: RowStarts<'a>,
+    /// The line's place in each column, in rows from the next one.
     y: LineLanes,
     inverse_width: LineLanes,
     weight: LineLanes,
@@ -164,9 +165,10 @@ struct NearRows<'a> {
 
 impl NearRows<'_> {
     #[inline(always)]
-    fn add<const HAS_NORMALS: bool>(&self, row: i32, sums: &mut WideSums<HAS_NORMALS>) {
-        let part = (LineLanes::ONE - (self.y - row as f32).abs() * self.inverse_width).fast_max(LineLanes::ZERO);
-        sums.add_run(self.level, self.level.row_start(self.lowest + row) + self.column, self.weight * part);
+    fn add_next<const HAS_NORMALS: bool>(&mut self, sums: &mut WideSums<HAS_NORMALS>) {
+        let part = (LineLanes::ONE - self.y.abs() * self.inverse_width).fast_max(LineLanes::ZERO);
+        sums.add_run(self.level, self.starts.next() + self.column, self.weight * part);
+        self.y -= 1.0;
     }
 }
 

@@ -18,7 +18,10 @@ impl<const HAS_NORMALS: bool> WideSums<HAS_NORMALS> {
     /// Adds sixteen texels of a row, from `start`.
     #[inline(always)]
     pub(super) fn add_run(&mut self, level: &Level, start: usize, weight: LineLanes) {
-        self.add(|plane| Level::long_run(level.words(), start + plane * level.stride()), weight);
+        let (stride, num_planes) = (level.stride(), if HAS_NORMALS { 3 } else { 2 });
+        // One check for all planes.
+        let words = &level.words()[start..][..(num_planes - 1) * stride + 16];
+        self.add(|plane| Level::long_run(words, plane * stride), weight);
     }
 
     /// Adds eight texels of each of two rows.
