@@ -2,8 +2,8 @@
 
 mod common;
 
-use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
 use basrelief::frame::Pixel;
+use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
 use basrelief::{Camera, Filter, Frame, Material, Mesh, Renderer, Scene, Settings};
 use common::{Random, flat_surface, floor_scene};
 use glam::Vec3;

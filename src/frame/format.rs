@@ -1,7 +1,7 @@
 //! Image formats and their encoders.
 
-use super::{Frame, Pixel};
 use super::png::{Part, PngHead, write_png};
+use super::{Frame, Pixel};
 use crate::error::{Error, Result};
 use image::codecs::{bmp, jpeg, openexr, tga, tiff};
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
@@ -92,8 +92,12 @@ fn encode_bytes<P: Pixel>(frame: &Frame<P>, format: Format, has_opacity: bool) -
 fn encode_linear<P: Pixel>(frame: &Frame<P>, has_opacity: bool) -> ImageResult<Vec<u8>> {
     let (color, num_channels) =
         if has_opacity { (ExtendedColorType::Rgba32F, 4) } else { (ExtendedColorType::Rgb32F, 3) };
-    let pixels: Vec<u8> =
-        frame.pixels.iter().flat_map(|pixel| pixel.to_linear().into_iter().take(num_channels)).flat_map(f32::to_ne_bytes).collect();
+    let pixels: Vec<u8> = frame
+        .pixels
+        .iter()
+        .flat_map(|pixel| pixel.to_linear().into_iter().take(num_channels))
+        .flat_map(f32::to_ne_bytes)
+        .collect();
     let mut file = Cursor::new(Vec::new());
     openexr::OpenExrEncoder::new(&mut file).write_image(&pixels, frame.width, frame.height, color)?;
     Ok(file.into_inner())

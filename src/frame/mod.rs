@@ -59,7 +59,6 @@ impl<P: Pixel> Frame<P> {
         (self.width, self.height) = (region.width, region.height);
     }
 
-
     /// Whether no pixel lets anything through.
     #[must_use]
     pub fn is_opaque(&self) -> bool {

@@ -2,7 +2,8 @@
 
 use crate::filter::{Filtered, unpack_normals};
 use crate::simd::{
-    LineLanes, TexelLanes, halves, high_half, high_halves, join, join_words, low_half, low_halves, split, sum, sums, u32x16,
+    LineLanes, TexelLanes, halves, high_half, high_halves, join, join_words, low_half, low_halves, split, sum, sums,
+    u32x16,
 };
 use crate::texture::Level;
 
