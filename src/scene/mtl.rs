@@ -5,7 +5,7 @@ use super::lines::{CleanLines, Place};
 use super::mtl_lines::{LineNumbers, MtlLines};
 use super::texture_line::TextureLine;
 use crate::error::{Error, Result};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::io::{BufRead, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -58,7 +58,16 @@ pub(super) struct MtlFiles {
     files: HashSet<PathBuf>,
 }
 
-type TobjMaterials = (Vec<tobj::Material>, HashMap<String, usize>);
+/// What `tobj` takes materials as, whose kind of map it does not name.
+pub(super) type TobjMaterials = <tobj::MTLLoadResult as Successful>::Value;
+
+pub(super) trait Successful {
+    type Value;
+}
+
+impl<T, E> Successful for std::result::Result<T, E> {
+    type Value = T;
+}
 
 impl MtlFiles {
     /// No materials yet, for the OBJ file `obj`.
