@@ -82,13 +82,12 @@ impl VisibilityBuffer {
     #[inline(always)]
     fn hides(&self, triangle: &ScreenTriangle) -> bool {
         let [dx, dy, constant] = triangle.depth;
+        let [a, b, c] = triangle.corners.map(|corner| corner.map(|c| c as f32 * (1.0 / 256.0)));
+        // No sample of the triangle has larger terms.
+        let [x, y] = [0, 1].map(|i| a[i].abs().max(b[i].abs()).max(c[i].abs()));
+        let rounding = (x * dx.abs() + y * dy.abs() + constant.abs()) * ROUNDING;
         // A plane is nearest at a corner.
-        let nearest = triangle.corners.map(|corner| {
-            let [x, y] = corner.map(|c| c as f32 * (1.0 / 256.0));
-            let (along_x, along_y) = (x * dx, y * dy);
-            along_x + along_y + constant + (along_x.abs() + along_y.abs() + constant.abs()) * ROUNDING
-        });
-        nearest.into_iter().all(|nearest| nearest < self.hidden)
+        [a, b, c].into_iter().all(|[x, y]| x * dx + y * dy + constant + rounding < self.hidden)
     }
 
     /// Takes back what whole lane vectors drew to the right of the frame.
