@@ -31,6 +31,9 @@ use crate::texture::Surface;
 /// Most texels of an ellipse, whatever the budget: larger ones take a coarser level, so that a pixel's time is bounded.
 pub(crate) const MAX_TEXELS: f32 = (1 << 20) as f32;
 
+/// Farthest texel from the pattern's first: numbers up to there, and their neighbours, fit 32 bits.
+const FARTHEST: f32 = (1 << 30) as f32;
+
 /// What a filter returns: means of the stored texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Filtered {

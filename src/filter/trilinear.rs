@@ -2,13 +2,10 @@
 //!
 //! Levels and places may differ from pixel to pixel. Lanes are pixels.
 
-use super::Differences;
 use super::corners::{Corners, corners};
+use super::{Differences, FARTHEST};
 use crate::simd::{LineLanes, PixelLanes, high_halves, i32x8, join, lanes, low_halves, mask, split, u32x16};
 use crate::texture::{Level, Surface};
-
-/// Farthest texel from the pattern's first: numbers up to there, and their neighbours, fit 32 bits.
-const FARTHEST: f32 = (1 << 30) as f32;
 
 /// Eight places in a level's texels.
 #[derive(Clone, Copy)]

@@ -19,10 +19,6 @@ use crate::texture::srgb8_from_linear;
 use rayon::prelude::*;
 use std::path::Path;
 
-fn over_black([r, g, b, _]: [f32; 4]) -> [u8; 3] {
-    [r, g, b].map(srgb8_from_linear)
-}
-
 /// Pixels that a thread encodes at once.
 const ROW: usize = 4096;
 
@@ -77,7 +73,11 @@ impl<P: Pixel> Frame<P> {
     /// 8-bit sRGB over black, row by row from the top.
     #[must_use]
     pub fn to_rgb8(&self) -> Vec<[u8; 3]> {
-        self.pixels.par_iter().map(|pixel| over_black(pixel.to_linear())).collect()
+        let over_black = |pixel: &P| {
+            let [rgb @ .., _] = pixel.to_linear();
+            rgb.map(srgb8_from_linear)
+        };
+        self.pixels.par_iter().map(over_black).collect()
     }
 
     /// 8-bit sRGB samples, row by row from the top: four a pixel with straight opacity, or three over black.

@@ -8,7 +8,7 @@
 use super::sums::WideSums;
 use crate::filter::{Filtered, PixelFootprints};
 use crate::settings::Settings;
-use crate::simd::{LineLanes, PixelLanes, i32x8, lanes, mask};
+use crate::simd::{LineLanes, PixelLanes, i32x8, lanes, line_indices, mask};
 use crate::texture::{APRON, Level, RowStarts, Surface};
 
 /// Variance of `exp(-2 r^2)` over the unit disc along a line through its middle.
@@ -124,7 +124,7 @@ impl Lines {
         let mut num_rows = 0;
         for block in (0..num).step_by(COLUMNS) {
             let start = start + block as f32;
-            let u = columns() + start;
+            let u = line_indices() + start;
             let t = u * inverse_reach;
             let z = (LineLanes::ONE - t * t).fast_max(LineLanes::ZERO);
             let weight = ((z * PROFILE[2] + PROFILE[1]) * z + PROFILE[0]) * z;
@@ -176,12 +176,6 @@ impl NearRows<'_> {
 #[inline(always)]
 fn floor(y: f32) -> i32 {
     PixelLanes::splat(y).floor().fast_trunc_int().as_array()[0]
-}
-
-/// 0 to 15.
-#[inline(always)]
-fn columns() -> LineLanes {
-    LineLanes::new(std::array::from_fn(|lane| lane as f32))
 }
 
 const _: () = assert!(COLUMNS <= APRON, "a run of columns is one load");

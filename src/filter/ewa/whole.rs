@@ -3,7 +3,7 @@
 use super::gaussian::gaussian;
 use super::sums::WideSums;
 use crate::filter::texel_set::lane_columns;
-use crate::filter::{Ellipse, Filtered, Footprint, MAX_TEXELS, isotropic, level_within_budget};
+use crate::filter::{Ellipse, FARTHEST, Filtered, Footprint, MAX_TEXELS, isotropic, level_within_budget};
 use crate::settings::{Formulas, Settings};
 use crate::simd::{LineLanes, from_words, join, join_words, line_indices, pick, u32x8, u32x16, words};
 use crate::texture::{APRON, Level, Surface};
@@ -12,9 +12,6 @@ use std::f32::consts::FRAC_1_PI;
 /// Shorter half axis of the ellipse in texels of the level that is taken, at least: the Gaussian's standard deviation, half
 /// of that, is then 0.7 texels, below which their grid undersamples it. At most twice as much.
 const LEAST_SHORT: f32 = 1.4;
-
-/// Farthest texel from the pattern's first: numbers up to there, and their neighbours, fit 32 bits.
-const FARTHEST: f32 = (1 << 30) as f32;
 
 /// Rows whose places are found at once.
 const ROWS: usize = 16;
