@@ -61,3 +61,11 @@ impl Error {
 
 /// A result whose error is [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// Refuses a setting that is not within its range.
+pub(crate) fn within<T: Copy + PartialOrd + std::fmt::Display>(name: &'static str, value: T, least: T, most: T) -> Result<()> {
+    if (least..=most).contains(&value) {
+        return Ok(());
+    }
+    Err(Error::setting(name, format!("{value} is not within {least} to {most}")))
+}

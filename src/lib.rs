@@ -103,6 +103,7 @@
 //! as wide as the crate is built for: see [`SIMD_LEVEL`] and the README.
 #![forbid(unsafe_code)]
 
+pub mod filter;
 pub mod frame;
 pub mod golden;
 pub mod inspect;
@@ -114,9 +115,11 @@ pub mod texture;
 mod error;
 // The stages are public to the crate's own tests, benches and fuzz targets, and no part of the interface.
 #[doc(hidden)]
-pub mod filter;
+pub mod footprint;
 #[doc(hidden)]
 pub mod geometry;
+#[doc(hidden)]
+pub mod light;
 #[doc(hidden)]
 pub mod raster;
 #[doc(hidden)]
@@ -126,14 +129,14 @@ pub mod relief;
 mod render;
 mod settings;
 #[doc(hidden)]
-pub mod shade;
-#[doc(hidden)]
 pub mod simd;
 
 pub use error::{Error, Result};
-pub use filter::{Footprint, ewa_color, seen_color};
 pub use frame::Frame;
-pub use render::{Renderer, Stats, render};
+pub use render::{DrawnPixel, Renderer, Stats, render};
 pub use scene::{Camera, Light, Material, Mesh, Scene};
-pub use settings::{Derivatives, Filter, Formulas, Lighting, Region, Settings, Visibility};
+pub use settings::{
+    Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, Lighting, RECONSTRUCTION, Rays, Region, Settings, Trilinear,
+    Visibility, Visible,
+};
 pub use simd::LEVEL as SIMD_LEVEL;

@@ -36,14 +36,12 @@ pub type TexelLanes = f32x8;
 pub type LineLanes = f32x16;
 
 /// The sum of the lanes, in one fixed order on every machine.
-#[must_use]
 pub fn sum(lanes: f32x8) -> f32 {
     let [a, b, c, d, e, f, g, h] = lanes.to_array();
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
 /// [`sum`] of each of four vectors.
-#[must_use]
 #[inline(always)]
 pub fn sums(vectors: [f32x8; 4]) -> [f32; 4] {
     let halves: [[f32x4; 2]; 4] = wide::bytemuck::cast(vectors);
@@ -52,48 +50,69 @@ pub fn sums(vectors: [f32x8; 4]) -> [f32; 4] {
 }
 
 /// All bits of the lanes whose bit is set.
-#[must_use]
 #[inline(always)]
 pub fn bits(bits: u8) -> u32x8 {
     let of_lanes = u32x8::new([1, 2, 4, 8, 16, 32, 64, 128]);
     (u32x8::splat(u32::from(bits)) & of_lanes).simd_eq(of_lanes)
 }
 
+/// The lanes whose bit is set, in order.
+#[inline(always)]
+pub fn set_bits(mut left: u8) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = left.trailing_zeros() as usize;
+        left &= left.wrapping_sub(1);
+        (lane < 8).then_some(lane)
+    })
+}
+
+/// [`bits`] as a mask of numbers.
+#[inline(always)]
+pub fn bits_mask(mask: u8) -> f32x8 {
+    wide::bytemuck::cast(bits(mask))
+}
+
 /// The lower sixteen bits of each lane as a number.
-#[must_use]
 pub fn low_half(words: u32x8) -> f32x8 {
     f32x8::from_i32x8(as_signed(words & u32x8::splat(0xffff)))
 }
 
 /// The upper sixteen bits of each lane as a number.
-#[must_use]
 pub fn high_half(words: u32x8) -> f32x8 {
     f32x8::from_i32x8(as_signed(words >> 16_u32))
 }
 
-/// The number of each lane.
-#[must_use]
+/// The columns of eight neighbouring texels, the first at `x`.
+#[inline(always)]
+pub fn lane_columns(x: i32) -> f32x8 {
+    lane_indices() + x as f32
+}
+
+/// The number of each of eight lanes.
+#[inline(always)]
+pub fn lane_indices() -> f32x8 {
+    f32x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
+}
+
+/// The number of each of sixteen lanes.
 #[inline(always)]
 pub fn line_indices() -> LineLanes {
     LineLanes::new(std::array::from_fn(|i| i as f32))
 }
 
 /// [`low_half`] of sixteen words.
-#[must_use]
 #[inline(always)]
 pub fn low_halves(words: u32x16) -> f32x16 {
     f32x16::from_i32x16(wide::bytemuck::cast(words & u32x16::splat(0xffff)))
 }
 
 /// [`high_half`] of sixteen words.
-#[must_use]
 #[inline(always)]
 pub fn high_halves(words: u32x16) -> f32x16 {
     f32x16::from_i32x16(wide::bytemuck::cast(words >> 16_u32))
 }
 
 /// `exp(-x)` for `0 <= x <= 4.5`, off by less than 1e-5: an eighth of x by Taylor's series, then three squarings.
-#[must_use]
 pub fn exp_negative(x: f32x8) -> f32x8 {
     let y = x * -0.125;
     let e = ((((y * (1.0 / 120.0) + 1.0 / 24.0) * y + 1.0 / 6.0) * y + 0.5) * y + 1.0) * y + 1.0;
@@ -104,7 +123,6 @@ pub fn exp_negative(x: f32x8) -> f32x8 {
 
 /// Of the words from `start` on, those with the given numbers and the ones after them. Numbers ascend from 0 or 1, each
 /// at most 2 more than the one before.
-#[must_use]
 #[inline(always)]
 pub fn pick_words(words: &[u32], start: usize, numbers: i32x16) -> [u32x16; 2] {
     debug_assert!((0..=1).contains(&numbers.as_array()[0]) && (0..31).contains(&numbers.as_array()[15]), "{numbers:?}");
@@ -147,7 +165,6 @@ fn pick_eight(words: [u32x8; 2], numbers: i32x8) -> u32x8 {
 pub const HAS_SHUFFLE: bool = cfg!(target_feature = "avx2");
 
 /// Of sixteen words, those with the given numbers, 0 to 15.
-#[must_use]
 #[inline(always)]
 pub fn pick(run: u32x16, numbers: u32x16) -> u32x16 {
     if cfg!(target_feature = "avx512f") {
@@ -159,7 +176,6 @@ pub fn pick(run: u32x16, numbers: u32x16) -> u32x16 {
 }
 
 /// The lanes in the order of the given numbers, 0 to 7.
-#[must_use]
 #[inline(always)]
 pub fn permute(values: f32x8, numbers: [u32; 8]) -> f32x8 {
     let words: i32x8 = wide::bytemuck::cast(values);
@@ -167,45 +183,38 @@ pub fn permute(values: f32x8, numbers: [u32; 8]) -> f32x8 {
 }
 
 /// The same bits as signed numbers.
-#[must_use]
 pub fn as_signed(words: u32x8) -> i32x8 {
     wide::bytemuck::cast(words)
 }
 
 /// The same bits as unsigned numbers.
-#[must_use]
 pub fn as_unsigned(words: i32x8) -> u32x8 {
     wide::bytemuck::cast(words)
 }
 
 /// The bits of sixteen lanes.
-#[must_use]
 #[inline(always)]
 pub fn words(lanes: f32x16) -> u32x16 {
     wide::bytemuck::cast(lanes)
 }
 
 /// Sixteen lanes of those bits.
-#[must_use]
 #[inline(always)]
 pub fn from_words(words: u32x16) -> f32x16 {
     wide::bytemuck::cast(words)
 }
 
 /// The lanes of a comparison, all bits or none, as a mask of whole numbers.
-#[must_use]
 pub fn mask(comparison: f32x8) -> i32x8 {
     wide::bytemuck::cast(comparison)
 }
 
 /// A mask of whole numbers as the lanes of a comparison.
-#[must_use]
 pub fn lanes(mask: i32x8) -> f32x8 {
     wide::bytemuck::cast(mask)
 }
 
 /// The four values of each pixel of two quads, whose lanes the vectors are, value by value.
-#[must_use]
 #[inline(always)]
 pub fn quads_by_pixel(values: [f32x8; 4]) -> [[[f32; 4]; 4]; 2] {
     let values: [[f32x4; 2]; 4] = wide::bytemuck::cast(values);
@@ -213,25 +222,21 @@ pub fn quads_by_pixel(values: [f32x8; 4]) -> [[[f32; 4]; 4]; 2] {
 }
 
 /// Sixteen lanes of two vectors of eight.
-#[must_use]
 pub fn join(halves: [f32x8; 2]) -> f32x16 {
     wide::bytemuck::cast(halves)
 }
 
 /// The two vectors of eight that sixteen lanes are.
-#[must_use]
 pub fn split(lanes: f32x16) -> [f32x8; 2] {
     wide::bytemuck::cast(lanes)
 }
 
 /// Sixteen words of two vectors of eight.
-#[must_use]
 pub fn join_words(halves: [u32x8; 2]) -> u32x16 {
     wide::bytemuck::cast(halves)
 }
 
 /// The two vectors of eight that sixteen words are.
-#[must_use]
 pub fn halves(words: u32x16) -> [u32x8; 2] {
     wide::bytemuck::cast(words)
 }
@@ -242,15 +247,13 @@ pub struct Blend(wide::i16x16);
 
 impl Blend {
     /// For a place between near (0) and far (just under 1), per lane.
-    #[must_use]
-    pub fn new(part: f32x8) -> Self {
+        pub fn new(part: f32x8) -> Self {
         let part = as_unsigned((part * 32767.0).fast_trunc_int());
         Self(wide::bytemuck::cast(part | part << 16_u32))
     }
 
     /// The words between `near` and `far`, each half within those of the two.
-    #[must_use]
-    pub fn mix(self, [near, far]: [u32x8; 2]) -> u32x8 {
+        pub fn mix(self, [near, far]: [u32x8; 2]) -> u32x8 {
         let (near, far): (wide::i16x16, wide::i16x16) = (wide::bytemuck::cast(near), wide::bytemuck::cast(far));
         wide::bytemuck::cast(near + (far - near).mul_scale_round(self.0))
     }
@@ -262,16 +265,14 @@ pub struct LineBlend([Blend; 2]);
 
 impl LineBlend {
     /// See [`Blend::new`].
-    #[must_use]
-    #[inline(always)]
+        #[inline(always)]
     pub fn new(part: f32x16) -> Self {
         let part: u32x16 = wide::bytemuck::cast((part * 32767.0).fast_trunc_int());
         Self(halves(part | part << 16_u32).map(|half| Blend(wide::bytemuck::cast(half))))
     }
 
     /// See [`Blend::mix`].
-    #[must_use]
-    #[inline(always)]
+        #[inline(always)]
     pub fn mix(self, [near, far]: [u32x16; 2]) -> u32x16 {
         let (near, far) = (halves(near), halves(far));
         wide::bytemuck::cast([0, 1].map(|i| self.0[i].mix([near[i], far[i]])))

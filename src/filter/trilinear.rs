@@ -1,11 +1,17 @@
-//! Trilinear look-ups of eight pixels at once, to the bits of [`isotropic::trilinear`](super::isotropic::trilinear).
+//! Trilinear look-ups of eight pixels at once, to the bits of [`points::trilinear`](super::points::trilinear).
 //!
 //! Levels and places may differ from pixel to pixel. Lanes are pixels.
 
+use super::batch::{Batch, Filtered, each_covered};
 use super::corners::{Corners, corners};
-use super::{Differences, FARTHEST};
-use crate::simd::{LineLanes, PixelLanes, high_halves, i32x8, join, lanes, low_halves, mask, split, u32x16};
-use crate::texture::{Level, Surface};
+use super::points;
+use super::queue::Queue;
+use crate::footprint::levels::{longest_sides, of_sizes};
+use crate::simd::{LineLanes, PixelLanes, high_halves, i32x8, join, lanes, low_halves, split, u32x16};
+use crate::texture::{Rows, Surface};
+
+/// Texel coordinates are clamped to so far from the pattern's first, so that neighbours fit an i32.
+const FARTHEST: f32 = (1 << 30) as f32;
 
 /// Eight places in a level's texels.
 #[derive(Clone, Copy)]
@@ -24,10 +30,35 @@ struct Spots {
     blend: PixelLanes,
 }
 
+/// The mean colours of a batch's pixels; with lights, their mean normals too.
+pub(super) fn colors(surface: &Surface, batch: &Batch, out: &mut [Filtered]) {
+    if batch.is_lit() {
+        // Of the lanes' look-ups only colours are made.
+        return each_covered(batch, out, |pixels, lane| {
+            let size = longest_sides(surface.base(), pixels).as_array()[lane];
+            points::trilinear(surface, pixels.lane(lane).hit, size)
+        });
+    }
+    let mut pixels = batch.pixels.iter().enumerate();
+    let mut queue = Queue::new();
+    loop {
+        while let Some((index, pixels)) = if queue.is_full() { None } else { pixels.next() } {
+            let [u, v] = pixels.hit;
+            queue.push(pixels.covered, index, &[u, v, longest_sides(surface.base(), pixels)]);
+        }
+        if queue.is_empty() {
+            return;
+        }
+        queue.fill_up();
+        look_up(surface, queue.groups(), |group, found| queue.hand_out(group, found, out));
+        queue.advance();
+    }
+}
+
 /// The mean colours of groups of eight pixels: their places (u and v in repeats, within 1e6) and the lengths of their
 /// footprints in base texels. `sink` gets each group's index and colours.
 #[inline(always)]
-pub fn colors(surface: &Surface, groups: &[[PixelLanes; 3]], mut sink: impl FnMut(usize, [PixelLanes; 3])) {
+pub fn look_up(surface: &Surface, groups: &[[PixelLanes; 3]], mut sink: impl FnMut(usize, [PixelLanes; 3])) {
     let Some(first) = groups.first() else { return };
     // The next group's places are found before this one's texels are read: neither waits for the other.
     let mut levels = TwoLevels::new(surface, 0);
@@ -36,8 +67,8 @@ pub fn colors(surface: &Surface, groups: &[[PixelLanes; 3]], mut sink: impl FnMu
         let (spots, of_spots) = (next, levels);
         next = Spots::new(surface, &mut levels, groups.get(index + 1).unwrap_or(group));
         let is_blended = spots.blend.simd_gt(PixelLanes::ZERO).any();
-        let [fine, coarse] = [0, 1].map(|i| (of_spots.levels[i], &spots.spots[i]));
-        let color = |(level, spot): (&Level, &Spot)| spot.color(level);
+        let [fine, coarse] = [0, 1].map(|i| (of_spots.rows[i], &spots.spots[i]));
+        let color = |(rows, spot): (&Rows, &Spot)| spot.color(rows);
         let color = match (spots.is_same, is_blended) {
             (false, _) => on_several_levels(surface, group),
             (true, true) => mixed(&color(fine), &color(coarse), spots.blend),
@@ -52,15 +83,14 @@ pub fn colors(surface: &Surface, groups: &[[PixelLanes; 3]], mut sink: impl FnMu
 #[derive(Clone, Copy)]
 struct TwoLevels<'a> {
     index: usize,
-    levels: [&'a Level; 2],
+    rows: [&'a Rows; 2],
     texels: [[f32; 2]; 2],
 }
 
 impl<'a> TwoLevels<'a> {
     fn new(surface: &'a Surface, index: usize) -> Self {
-        let indices = [index, (index + 1).min(surface.levels.len() - 1)];
-        let levels = indices.map(|index| &surface.levels[index]);
-        Self { index, levels, texels: indices.map(|index| surface.texels_per_repeat(index)) }
+        let levels = [index, (index + 1).min(surface.last_level())].map(|index| &surface.levels()[index]);
+        Self { index, rows: levels.map(|level| level.rows(false)), texels: levels.map(|l| l.texels_per_repeat()) }
     }
 }
 
@@ -68,7 +98,7 @@ impl Spots {
     /// Sets `levels` to the first pixel's.
     #[inline(always)]
     fn new<'a>(surface: &'a Surface, levels: &mut TwoLevels<'a>, &[u, v, size]: &[PixelLanes; 3]) -> Self {
-        let (numbers, blend) = levels_of_sizes(size, surface.levels.len() - 1);
+        let (numbers, blend) = of_sizes(size, surface.last_level());
         let index = numbers.as_array()[0];
         if index as usize != levels.index {
             *levels = TwoLevels::new(surface, index as usize);
@@ -81,14 +111,14 @@ impl Spots {
 /// The mean colours of pixels on different levels.
 #[inline(never)]
 fn on_several_levels(surface: &Surface, &[u, v, size]: &[PixelLanes; 3]) -> [PixelLanes; 3] {
-    let (levels, blend) = levels_of_sizes(size, surface.levels.len() - 1);
+    let (levels, blend) = of_sizes(size, surface.last_level());
     let [mut fine, mut coarse] = [[PixelLanes::ZERO; 3]; 2];
-    for index in 0..surface.levels.len() {
+    for (index, level) in surface.levels().iter().enumerate() {
         let at = |index: i32| lanes(levels.simd_eq(i32x8::splat(index)));
         let is_fine = at(index as i32);
         let is_coarse = at(index as i32 - 1) & blend.simd_gt(PixelLanes::ZERO);
         if (is_fine | is_coarse).any() {
-            let found = Spot::new(surface.texels_per_repeat(index), [u, v]).color(&surface.levels[index]);
+            let found = Spot::new(level.texels_per_repeat(), [u, v]).color(level.rows(false));
             fine = [0, 1, 2].map(|c| is_fine.select(found[c], fine[c]));
             coarse = [0, 1, 2].map(|c| is_coarse.select(found[c], coarse[c]));
         }
@@ -99,30 +129,6 @@ fn on_several_levels(surface: &Surface, &[u, v, size]: &[PixelLanes; 3]) -> [Pix
 #[inline(always)]
 fn mixed(fine: &[PixelLanes; 3], coarse: &[PixelLanes; 3], blend: PixelLanes) -> [PixelLanes; 3] {
     [0, 1, 2].map(|c| fine[c] + (coarse[c] - fine[c]) * blend)
-}
-
-/// [`isotropic::level_of_size`](super::isotropic::level_of_size) of eight sizes; none is beyond the last level.
-#[inline]
-fn levels_of_sizes(size: PixelLanes, last: usize) -> (i32x8, PixelLanes) {
-    let bits: i32x8 = mask(size);
-    let is_large = mask(size.simd_gt(PixelLanes::ONE));
-    let level = ((bits >> 23_i32) - 127) & is_large;
-    let mantissa = lanes(bits & i32x8::splat(0x007f_ffff) | i32x8::splat(0x3f80_0000)) - 1.0;
-    let last = i32x8::splat(last as i32);
-    (level.min(last), mantissa & lanes(is_large & level.simd_lt(last)))
-}
-
-/// The longer derivatives of eight footprints in base texels; derivatives beyond 16 repeats are shortened.
-#[must_use]
-#[inline]
-pub fn longest_side(surface: &Surface, differences: &Differences) -> PixelLanes {
-    let texels = surface.texels_per_repeat(0);
-    let Differences { dx, dy } = differences.shortened();
-    let squared = |[u, v]: [PixelLanes; 2]| {
-        let (u, v) = (u * texels[0], v * texels[1]);
-        u * u + v * v
-    };
-    squared(dx).fast_max(squared(dy)).sqrt()
 }
 
 impl Spot {
@@ -138,9 +144,9 @@ impl Spot {
 
     /// Interpolated between the four texels around each place.
     #[inline(always)]
-    fn color(&self, level: &Level) -> [PixelLanes; 3] {
+    fn color(&self, rows: &Rows) -> [PixelLanes; 3] {
         let [x, y] = self.corner;
-        let [red_green, blue] = corners(level, x, y);
+        let [red_green, blue] = corners(rows, x, y);
         let part = join([self.part[1], self.part[1]]);
         let mix = |channel: fn(u32x16) -> LineLanes, Corners { above, below }: Corners| {
             let [above, below] = [channel(above), channel(below)];

@@ -5,9 +5,9 @@
 //! and exit of the ellipse of formula (2), the running horizon is `M_i = max(M_(i-1), min(p_i, exit))`, and the visible
 //! length of the relief between two rows is `M_i - M_(i-1)`. All in texels of the level along the line.
 
-use super::ground::Quad;
-use crate::filter::Ellipse;
-use crate::settings::{Derivatives, Formulas, Settings};
+use super::ground::QuadPixel;
+use crate::footprint::Ellipse;
+use crate::settings::{FootprintRule, Formulas};
 use crate::texture::{Level, Surface};
 
 /// A shorter displacement, in texels, hides nothing.
@@ -22,7 +22,7 @@ pub struct Cut {
     /// Unit vector along the line, in texels.
     pub direction: [f64; 2],
     /// How far the ray moves down to the deepest relief: |D|.
-    pub reach: f64,
+    pub displacement: f64,
     /// Depth of the deepest relief, in texels along the line.
     pub relief_depth: f64,
     /// Where the line enters and leaves the ellipse of formula (2).
@@ -51,15 +51,16 @@ pub struct CutPoint {
 }
 
 impl Cut {
-    /// The cut of a quad's pixel through a level.
-    pub(super) fn new(surface: &Surface, quad: &Quad, level: usize, settings: &Settings) -> Self {
-        let texels = surface.texels_per_repeat(level).map(f64::from);
+    /// The cut of a pixel through a level.
+    pub(super) fn new(surface: &Surface, seen: &QuadPixel, level: usize, max_anisotropy: f32) -> Self {
+        let level = &surface.levels()[level];
+        let texels = level.texels_per_repeat();
+        let ellipse = Ellipse::new(&seen.footprint(&FootprintRule::FLAT), texels, Formulas::Meant);
+        let texels = texels.map(f64::from);
         let scaled = |p: [f32; 2]| [f64::from(p[0]) * texels[0], f64::from(p[1]) * texels[1]];
-        let footprint = quad.footprint((Derivatives::Flat, Formulas::Meant));
-        let ellipse = Ellipse::new(&footprint, surface.texels_per_repeat(level), Formulas::Meant);
-        let line = Line::new(&surface.levels[level], scaled(quad.ray.base), scaled(quad.ray.displacement));
-        let half = line.half_chord(&ellipse.bounded(settings.max_anisotropy));
-        let hit_depth = f64::from(quad.ray.hit_depth);
+        let line = Line::new(level, scaled(seen.ray.base), scaled(seen.ray.displacement));
+        let half = line.half_chord(&ellipse.bounded(max_anisotropy));
+        let hit_depth = f64::from(seen.ray.hit_depth);
         // What a repeat is long on this line: the hypotenuse of its parts along u and v.
         let repeat = {
             let [u, v] = [line.direction[0] / texels[0], line.direction[1] / texels[1]];
@@ -67,10 +68,10 @@ impl Cut {
         };
         Self {
             direction: line.direction,
-            reach: line.reach,
-            relief_depth: f64::from(surface.relief_depth) * repeat,
+            displacement: line.displacement,
+            relief_depth: f64::from(surface.relief_depth()) * repeat,
             ellipse: [-half, half],
-            hit: [hit_depth * line.reach, hit_depth],
+            hit: [hit_depth * line.displacement, hit_depth],
             points: line.walk(half),
         }
     }
@@ -78,7 +79,6 @@ impl Cut {
 
 impl Cut {
     /// How many of the rows between the ellipse's entry and the row that closes the horizon are seen, and how many there are.
-    #[must_use]
     pub fn num_seen(&self) -> [usize; 2] {
         let [entry, exit] = self.ellipse;
         let last = self.points.iter().position(|point| point.horizon >= exit).unwrap_or(self.points.len() - 1);
@@ -94,7 +94,8 @@ struct Line<'a> {
     /// Where it begins; texel centres lie at whole numbers.
     start: [f64; 2],
     direction: [f64; 2],
-    reach: f64,
+    /// Length of the displacement.
+    displacement: f64,
     /// The axis that rows are counted along: the longer one of the direction.
     axis: usize,
 }
@@ -105,8 +106,8 @@ impl<'a> Line<'a> {
         let is_flat = length < FLAT;
         let direction = if is_flat { [1.0, 0.0] } else { displacement.map(|d| d / length) };
         let axis = usize::from(direction[1].abs() >= direction[0].abs());
-        let reach = if is_flat { 0.0 } else { length };
-        Self { level, start: base.map(|b| b - 0.5), direction, reach, axis }
+        let displacement = if is_flat { 0.0 } else { length };
+        Self { level, start: base.map(|b| b - 0.5), direction, displacement, axis }
     }
 
     /// Half the length of the line in an ellipse around its start.
@@ -119,15 +120,15 @@ impl<'a> Line<'a> {
     /// The crossings around an ellipse that reaches `half` before and behind the start.
     fn walk(&self, half: f64) -> Vec<CutPoint> {
         let per_row = 1.0 / self.direction[self.axis].abs();
-        let margin = MARGIN * (2.0 * half + self.reach) + 2.0 * per_row;
+        let margin = MARGIN * (2.0 * half + self.displacement) + 2.0 * per_row;
         let toward = self.direction[self.axis].signum();
         let row_of = |s: f64| toward * self.start[self.axis] + s / per_row;
-        let rows = row_of(-half - margin).floor() as i64..=row_of(half + self.reach + margin).ceil() as i64;
+        let rows = row_of(-half - margin).floor() as i64..=row_of(half + self.displacement + margin).ceil() as i64;
         let mut horizon = -half;
         let at = |row: i64| self.crossing((toward * row as f64) as i64);
         rows.map(|row| {
             let (texel, along, depth) = at(row);
-            let projected = along - depth * self.reach;
+            let projected = along - depth * self.displacement;
             let before = horizon;
             horizon = projected.min(half).max(horizon);
             CutPoint { texel, along, depth, projected, horizon, visible: horizon - before }

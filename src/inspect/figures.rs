@@ -1,7 +1,7 @@
 //! Where to look on the built-in scene to see the paper's figures.
 
 use crate::scene::{self, Scene};
-use crate::settings::{Derivatives, Filter, Settings, Visibility};
+use crate::settings::{Derivatives, Filter, Settings, Visible};
 
 /// One of the paper's figures, as a pixel of the built-in scene. The paper has two of number 2; the first, the bare
 /// ellipse, is the outline of the second.
@@ -26,30 +26,28 @@ impl Figure {
     ];
 
     /// The built-in scene.
-    #[must_use]
     pub fn scene(&self) -> Scene {
         scene::builtin()
     }
 
     /// The settings of the figure.
-    #[must_use]
     pub fn settings(&self) -> Settings {
         Settings {
             width: 640,
             height: 360,
-            filter: Filter::Visible,
-            visibility: Visibility::Exact,
+            filter: Filter::Visible(Visible {
+                derivatives: if self.number == 2 { Derivatives::Flat } else { Derivatives::Relief },
+                // The letter: the full texture, and jumps of the relief are slopes.
+                texel_budget: 0,
+                max_stretch: 0.0,
+                ..Visible::default()
+            }),
             parallax: self.number != 2,
-            derivatives: if self.number == 2 { Derivatives::Flat } else { Derivatives::Relief },
-            texel_budget: 0,
-            // The letter: jumps of the relief are slopes.
-            max_stretch: 0.0,
             ..Settings::default()
         }
     }
 
     /// Column and row of the pixel.
-    #[must_use]
     pub fn pixel(&self) -> [u32; 2] {
         self.pixel
     }

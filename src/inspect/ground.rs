@@ -1,12 +1,12 @@
 //! The triangle at a pixel's centre, and what the pixel's quad knows of it.
 
-use super::Ray;
-use crate::filter::{self, Differences};
+use super::ray::Ray;
+use crate::footprint::{Footprint, Footprints};
 use crate::geometry::{self, Geometry, ScreenTriangle, sample_offsets};
 use crate::raster::{AttributePlanes, Edges, Rect};
-use crate::relief::{self, HeightField, displacement, march};
+use crate::relief::{HeightField, displacement, finite, march};
 use crate::scene::Scene;
-use crate::settings::{Derivatives, Formulas, Settings};
+use crate::settings::{FootprintRule, Settings};
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
 
@@ -19,18 +19,19 @@ pub(super) struct Ground {
     planes: AttributePlanes,
 }
 
-/// A pixel within its 2x2 quad, which are four of eight lanes: `4 * quad + 2 * dy + dx`.
+/// Two quads over a relief, or over the bare polygon: lane `4 * quad + 2 * dy + dx`.
 #[derive(Clone, Copy)]
-pub(super) struct Quad {
-    /// The pixel's lane.
+pub(super) struct Quads<'a> {
+    uv: [PixelLanes; 2],
+    view: [PixelLanes; 3],
+    field: Option<&'a HeightField>,
+}
+
+/// A pixel of two quads.
+#[derive(Clone, Copy)]
+pub(super) struct QuadPixel<'a> {
+    quads: Quads<'a>,
     pub(super) lane: usize,
-    /// Coordinates on the polygon, in repeats.
-    pub(super) uv: [PixelLanes; 2],
-    /// How far the view ray moves along the texture down to the deepest relief.
-    pub(super) reach: [PixelLanes; 2],
-    /// How far the relief moves them.
-    pub(super) offset: [PixelLanes; 2],
-    /// The pixel's own ray.
     pub(super) ray: Ray,
 }
 
@@ -52,62 +53,53 @@ impl Ground {
         })
     }
 
-    /// The pixel's quad over the relief of `field`, or over the bare polygon.
-    pub(super) fn quad(&self, surface: &Surface, field: Option<&HeightField>) -> Quad {
+    /// The pixel over the relief of `field`, or over the bare polygon.
+    pub(super) fn pixel<'a>(&self, field: Option<&'a HeightField>) -> QuadPixel<'a> {
         let [x, y] = self.pixel.map(|c| (c & !1) as f32);
         let x = PixelLanes::new([0.5, 1.5, 0.5, 1.5, 0.5, 1.5, 0.5, 1.5]) + x;
         let y = PixelLanes::new([0.5, 0.5, 1.5, 1.5, 0.5, 0.5, 1.5, 1.5]) + y;
         let (uv, view) = self.planes.at(x, y);
-        let lane = (self.pixel[0] & 1 | (self.pixel[1] & 1) << 1) as usize;
-        Quad::lanes(&uv, &view, surface, field)[lane]
+        Quads { uv, view, field }.pixels()[(self.pixel[0] & 1 | (self.pixel[1] & 1) << 1) as usize]
     }
 }
 
-impl Quad {
-    /// The eight pixels of two quads, over the relief of `field`, or over the bare polygon.
-    pub(super) fn lanes(
-        uv: &[PixelLanes; 2],
-        view: &[PixelLanes; 3],
-        surface: &Surface,
-        field: Option<&HeightField>,
-    ) -> [Self; 8] {
-        let uv = uv.map(relief::finite);
-        let reach = displacement(view, field.map_or(0.0, |_| surface.relief_depth));
-        let depth = field.map_or(PixelLanes::ZERO, |field| march(field, &uv, &reach));
-        let offset = [reach[0] * depth, reach[1] * depth];
-        let place = [uv[0] + offset[0], uv[1] + offset[1]];
+impl<'a> Quads<'a> {
+    /// Quads with the texture coordinates `uv` and view rays `view`.
+    pub(super) fn new(uv: [PixelLanes; 2], view: [PixelLanes; 3], field: Option<&'a HeightField>) -> Self {
+        Self { uv, view, field }
+    }
+
+    /// Its pixels with their rays.
+    pub(super) fn pixels(self) -> [QuadPixel<'a>; 8] {
+        let uv = self.uv.map(finite);
+        let displacement = displacement(&self.view, self.field.map_or(0.0, |field| field.relief_depth));
+        let depth = self.field.map_or(PixelLanes::ZERO, |field| march(field, &uv, &displacement));
+        let hit = [0, 1].map(|i| uv[i] + displacement[i] * depth);
         std::array::from_fn(|lane| {
             let at = |lanes: &[PixelLanes; 2]| lanes.map(|lanes| lanes.as_array()[lane]);
             let hit_depth = depth.as_array()[lane];
-            let ray = Ray { base: at(&uv), displacement: at(&reach), hit_depth, hit: at(&place) };
-            Self { lane, uv, reach, offset, ray }
+            let ray = Ray { base: at(&uv), displacement: at(&displacement), hit_depth, hit: at(&hit) };
+            QuadPixel { quads: self, lane, ray }
         })
+    }
+}
+
+impl QuadPixel<'_> {
+    /// The pixel's footprint by a rule.
+    pub(super) fn footprint(&self, rule: &FootprintRule) -> Footprint {
+        let Quads { uv, view, field } = self.quads;
+        Footprints::of_quads(&uv, &view, field, rule, u8::MAX).lane(self.lane)
+    }
+
+    /// Texture coordinates of a lane of the quad, and what the relief adds to them.
+    pub(super) fn corner(&self, lane: usize) -> [[f32; 2]; 2] {
+        let Ray { base, hit_depth, displacement, .. } = self.quads.pixels()[lane].ray;
+        [base, displacement.map(|d| d * hit_depth)]
     }
 
     /// The texel of the full texture that the pixel's ray hits.
     pub(super) fn texel(&self, surface: &Surface) -> [i32; 2] {
-        let texels = surface.texels_per_repeat(0);
-        [0, 1].map(|i| (self.ray.hit[i] * texels[i]).floor() as i32)
-    }
-
-    /// Formula (2) or (3) of the quad.
-    pub(super) fn differences(&self, which: (Derivatives, Formulas)) -> Differences {
-        filter::differences(&self.uv, &self.offset, which)
-    }
-
-    /// The footprint that filters put around the hit.
-    pub(super) fn filtered(&self, settings: &Settings) -> filter::Footprint {
-        let place = [self.uv[0] + self.offset[0], self.uv[1] + self.offset[1]];
-        filter::differences_for(&self.uv, &self.offset, settings).footprint(&place, self.lane)
-    }
-
-    /// The pixel's footprint by a formula: (2) around the place on the polygon, (3) around the hit.
-    pub(super) fn footprint(&self, which: (Derivatives, Formulas)) -> filter::Footprint {
-        let place = match which.0 {
-            Derivatives::Flat => self.uv,
-            Derivatives::Relief => [self.uv[0] + self.offset[0], self.uv[1] + self.offset[1]],
-        };
-        self.differences(which).footprint(&place, self.lane)
+        surface.base().in_texels(self.ray.hit).map(|c| c.floor() as i32)
     }
 }
 

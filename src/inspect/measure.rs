@@ -1,18 +1,18 @@
 //! One number, or three, for every pixel of a frame.
 
 use super::cut::Cut;
-use super::ground::Quad;
+use super::ground::{QuadPixel, Quads};
 use super::sets::Sets;
 use crate::error::Result;
-use crate::filter::horizon::{Patches, picture_bins};
-use crate::filter::{Ellipse, FarField, Footprint, PixelFootprints, ewa, isotropic, level_within_budget, parallax};
+use crate::filter::{LevelChoice, Prepared, Scratch};
+use crate::footprint::{Ellipse, Footprint, Footprints};
 use crate::geometry;
-use crate::raster::{self, QuadPair};
-use crate::relief::HeightField;
+use crate::raster::{Pool, QuadBlock, QuadPair, Rasterizer};
+use crate::render::{PreparedScene, Shader};
 use crate::scene::Scene;
-use crate::settings::{Derivatives, Filter, Formulas, Lighting, Settings};
+use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
-use crate::texture::{Surface, unpack_normal};
+use crate::texture::Texel;
 use glam::Vec3;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -56,23 +56,27 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
     scene.validate()?;
     settings.validate()?;
     let is_lit = settings.lighting == Lighting::Lit;
+    let prepared = PreparedScene::new(scene);
+    let asks_levels = matches!(view, View::Mip | View::Horizon);
+    if asks_levels {
+        prepared.make_ready(settings);
+    }
     let msaa = if view == View::Coverage { settings.msaa } else { 1 };
     let lighting = if view == View::Normal { Lighting::Lit } else { Lighting::Unlit };
     let settings = Settings { msaa, lighting, ..settings.clone() };
-    let grounds = scene.materials.iter().map(|material| {
-        let surface = material.surface.as_deref()?;
-        Some(Ground::new(surface, &settings, (view, is_lit)))
-    });
-    let probe = Probe { settings: &settings, view, is_lit, grounds: grounds.collect() };
+    let pool = Pool::default();
+    let shader = Shader::new(scene, &settings, &prepared, &pool);
+    let probe = Probe { settings: &settings, view, is_lit, asks_levels, prepared: &prepared, shader: &shader };
     let pixels = Pixels::new(&settings);
-    let shade = |pair: &QuadPair| {
-        for (lane, value) in probe.values(pair).into_iter().enumerate() {
-            pixels.set(pair, lane, view, value);
+    let shade = |block: &QuadBlock, colors: &mut Vec<[PixelLanes; 3]>| {
+        for (pair, values) in block.pairs().zip(probe.values(block)) {
+            values.into_iter().enumerate().for_each(|(lane, value)| pixels.set(&pair, lane, view, value));
         }
-        [PixelLanes::ZERO; 3]
+        colors.resize(colors.len() + block.num_pairs(), [PixelLanes::ZERO; 3]);
     };
     let geometry = geometry::project(scene, &settings);
-    raster::draw(&geometry, scene, &settings, &shade, &mut crate::Frame::filled(1, 1, [0.0; 4]));
+    let mut frame = crate::Frame::filled(1, 1, [0.0; 4]);
+    Rasterizer::default().draw(&geometry, (scene, &settings), &shade, &|| 0.0, &mut frame);
     Ok(pixels.measured(&settings, view))
 }
 
@@ -92,8 +96,7 @@ impl Pixels {
         if pair.coverage[lane] == 0 {
             return;
         }
-        let [x, y] = pair.origin[lane / 4];
-        let [x, y] = [x + (lane as i32 & 1), y + (lane as i32 >> 1 & 1)].map(|c| c as usize);
+        let [x, y] = pair.pixel(lane).map(|c| c as usize);
         let numbers = &self.values[y * self.width + x];
         if view == View::Coverage {
             numbers[0].fetch_add(1, Ordering::Relaxed);
@@ -116,133 +119,104 @@ impl Pixels {
     }
 }
 
-/// What pixels on one material need.
-struct Ground<'a> {
-    surface: &'a Surface,
-    field: Option<HeightField>,
-    far: Option<FarField>,
-}
-
-impl<'a> Ground<'a> {
-    fn new(surface: &'a Surface, settings: &Settings, (view, is_lit): (View, bool)) -> Self {
-        let is_traced = settings.parallax && surface.relief_depth > 0.0;
-        let has_tables = is_traced && !is_lit && settings.filter == Filter::Horizon && settings.far_field;
-        Self {
-            surface,
-            field: is_traced.then(|| HeightField::new(surface)),
-            far: if has_tables && view == View::Mip { FarField::new(surface, settings) } else { None },
-        }
-    }
-}
-
 /// Measures pixels.
 struct Probe<'a> {
     settings: &'a Settings,
     view: View,
     is_lit: bool,
-    grounds: Vec<Option<Ground<'a>>>,
+    asks_levels: bool,
+    prepared: &'a PreparedScene,
+    shader: &'a Shader<'a>,
+}
+
+/// A pixel, and what frames read for it.
+struct Seen<'a> {
+    pixel: QuadPixel<'a>,
+    footprint: Footprint,
+    choice: LevelChoice,
 }
 
 impl Probe<'_> {
-    fn values(&self, pair: &QuadPair) -> [Option<[f32; 3]>; 8] {
-        let ground = self.grounds[pair.material].as_ref();
-        match (ground, self.view) {
-            // How many triangles there are is counted, not measured.
-            (_, View::Coverage) => [None; 8],
-            (Some(ground), _) => {
-                let quads = Quad::lanes(&pair.uv, &pair.view(), ground.surface, ground.field.as_ref());
-                self.each_covered(pair, |lane| self.value(pair, ground, &quads[lane]))
-            }
-            (None, View::Depth) => self.each_covered(pair, |lane| [self.distance(pair, lane), 0.0, 0.0]),
-            (None, View::Normal) => self.each_covered(pair, |lane| world(pair, lane, [0.0, 0.0, 1.0])),
-            (None, _) => [None; 8],
+    /// What a block's pairs give, `None` for what is not covered.
+    fn values(&self, block: &QuadBlock) -> Vec<[Option<[f32; 3]>; 8]> {
+        let prepared = self.prepared.of_material(block.material, self.settings.parallax);
+        let prepared = prepared.filter(|_| self.view != View::Coverage);
+        let Some(prepared) = prepared else {
+            return block.pairs().map(|pair| self.of_plain(&pair)).collect();
+        };
+        // Made and chosen for the whole block, as frames do it.
+        let (mut footprints, mut scratch) = (Vec::<Footprints>::new(), Scratch::default());
+        self.shader.footprints(prepared, (block, 0..block.num_pairs()), &mut footprints);
+        let choices = if self.asks_levels {
+            self.settings.filter.levels(prepared, &footprints, self.is_lit, &mut scratch)
+        } else {
+            vec![Default::default(); footprints.len()]
+        };
+        let pairs = block.pairs().zip(footprints.iter().zip(choices));
+        pairs.map(|(pair, (footprints, choices))| {
+            let pixels = Quads::new(pair.uv, pair.view(), prepared.field()).pixels();
+            each_covered(&pair, |lane| {
+                let seen = Seen { pixel: pixels[lane], footprint: footprints.lane(lane), choice: choices[lane] };
+                self.value(&pair, prepared, &seen)
+            })
+        })
+        .collect()
+    }
+
+    /// Pixels of a material without a texture. How many triangles there are is counted, not measured.
+    fn of_plain(&self, pair: &QuadPair) -> [Option<[f32; 3]>; 8] {
+        match self.view {
+            View::Depth => each_covered(pair, |lane| [distance(pair, lane), 0.0, 0.0]),
+            View::Normal => each_covered(pair, |lane| world(pair, lane, Texel::UP)),
+            View::Coverage | View::Mip | View::Footprint | View::Visible | View::Horizon | View::Uv => [None; 8],
         }
     }
 
-    fn each_covered(&self, pair: &QuadPair, mut value: impl FnMut(usize) -> [f32; 3]) -> [Option<[f32; 3]>; 8] {
-        std::array::from_fn(|lane| (pair.coverage[lane] > 0).then(|| value(lane)))
-    }
-
-    fn value(&self, pair: &QuadPair, ground: &Ground, quad: &Quad) -> [f32; 3] {
-        let (surface, settings) = (ground.surface, self.settings);
+    fn value(&self, pair: &QuadPair, prepared: &Prepared, seen: &Seen) -> [f32; 3] {
+        let (surface, filter) = (prepared.surface(), &self.settings.filter);
+        let Seen { pixel, footprint, choice } = seen;
         match self.view {
-            View::Mip => self.mip(ground, quad),
+            View::Mip => [choice.level as f32 + choice.blend, choice.far_share, 0.0],
             View::Footprint => {
-                let ellipse = Ellipse::new(&self.footprint(quad), surface.texels_per_repeat(0), settings.formulas);
-                [ellipse.widened(settings.max_anisotropy, settings.formulas).area(), 0.0, 0.0]
+                let formulas = filter.footprint_rule().formulas;
+                let ellipse = Ellipse::new(footprint, surface.base().texels_per_repeat(), formulas);
+                [ellipse.widened(filter.max_anisotropy(), formulas).area(), 0.0, 0.0]
             }
             View::Visible => {
-                let sets = Sets::new(surface, quad, ground.field.is_some(), settings);
+                let sets = Sets::new(prepared, pixel, filter);
                 [sets.visible.len() as f32 / sets.all.len().max(1) as f32, sets.all.len() as f32, 0.0]
             }
             View::Horizon => {
-                let [seen, all] = Cut::new(surface, quad, self.swept(ground, quad).0, settings).num_seen();
+                let [seen, all] = Cut::new(surface, pixel, choice.level, filter.max_anisotropy()).num_seen();
                 [seen as f32 / all.max(1) as f32, all as f32, 0.0]
             }
             View::Depth => {
                 // The ray sinks by gamma repeats on its way from the eye, and on by the depth of the hit.
-                let [.., gamma] = pair.view().map(|lanes| lanes.as_array()[quad.lane].abs());
-                let sunk = ground.field.as_ref().map_or(0.0, |_| surface.relief_depth * quad.ray.hit_depth);
-                [self.distance(pair, quad.lane) * (1.0 + sunk / gamma.max(f32::MIN_POSITIVE)), 0.0, 0.0]
+                let [.., gamma] = pair.view().map(|lanes| lanes.as_array()[pixel.lane].abs());
+                let sunk = prepared.field().map_or(0.0, |field| field.relief_depth * pixel.ray.hit_depth);
+                [distance(pair, pixel.lane) * (1.0 + sunk / gamma.max(f32::MIN_POSITIVE)), 0.0, 0.0]
             }
             View::Normal => {
-                let [x, y] = quad.texel(surface);
-                let normal = surface.has_normals.then(|| unpack_normal(surface.levels[0].packed(x, y)[2]));
-                world(pair, quad.lane, normal.unwrap_or([0.0, 0.0, 1.0]))
+                let [x, y] = pixel.texel(surface);
+                world(pair, pixel.lane, surface.base().texel(x, y).normal)
             }
-            View::Uv => [quad.ray.hit[0], quad.ray.hit[1], 0.0],
+            View::Uv => [pixel.ray.hit[0], pixel.ray.hit[1], 0.0],
             View::Coverage => [0.0; 3],
         }
     }
-
-    /// Distance along the view to the polygon.
-    fn distance(&self, pair: &QuadPair, lane: usize) -> f32 {
-        let [x, y] = pair.centers().map(|lanes| lanes.as_array()[lane]);
-        let [a, b, c] = pair.planes[lane / 4].inverse_w;
-        1.0 / (a * x + b * y + c)
-    }
-
-    /// The footprint of the filters that put it around the hit.
-    fn footprint(&self, quad: &Quad) -> Footprint {
-        quad.filtered(self.settings)
-    }
-
-    fn mip(&self, ground: &Ground, quad: &Quad) -> [f32; 3] {
-        let (surface, settings) = (ground.surface, self.settings);
-        let last = (surface.levels.len() - 1) as f32;
-        let level = match settings.filter {
-            Filter::Nearest | Filter::Bilinear | Filter::Truth => 0.0,
-            Filter::Trilinear => level_of_size(isotropic::longest_side(surface, &self.footprint(quad))).min(last),
-            Filter::Ewa => ewa::level(surface, &self.footprint(quad), settings) as f32,
-            Filter::Visible => level_within_budget(surface, &self.footprint(quad), settings).0 as f32,
-            Filter::Parallax => {
-                let footprint = quad.footprint((Derivatives::Flat, Formulas::Meant));
-                level_of_size(parallax::texel_size(surface, &footprint, settings.samples)).min(last)
-            }
-            Filter::Horizon => {
-                let (level, share) = self.swept(ground, quad);
-                return [level as f32, share, 0.0];
-            }
-        };
-        [level, 0.0, 0.0]
-    }
-
-    /// The level that the floating horizon takes for a pixel by itself, and the share of its colour that comes from tables.
-    fn swept(&self, ground: &Ground, quad: &Quad) -> (usize, f32) {
-        let differences = quad.differences((Derivatives::Flat, Formulas::Meant));
-        let pixels = [PixelFootprints::new(&quad.uv, &differences, quad.reach)];
-        let (surface, far, settings) = (ground.surface, ground.far.as_ref(), self.settings);
-        let patches =
-            Patches { surface, far, pixels: &pixels, settings, num_bins: picture_bins(settings, self.is_lit) };
-        let share = far.map_or(0.0, |far| far.shares(surface, &pixels[0], settings).as_array()[quad.lane]);
-        (patches.level(quad.lane as u8, self.is_lit), share)
-    }
 }
 
-/// The mip level, in fractions, whose texels have a size in base texels.
-fn level_of_size(size: f32) -> f32 {
-    let (level, blend) = isotropic::level_of_size(size);
-    level as f32 + blend
+fn each_covered(pair: &QuadPair, mut value: impl FnMut(usize) -> [f32; 3]) -> [Option<[f32; 3]>; 8] {
+    let mut values = [None; 8];
+    pair.covered().for_each(|lane| values[lane] = Some(value(lane)));
+    values
+}
+
+/// Distance along the view to the polygon.
+fn distance(pair: &QuadPair, lane: usize) -> f32 {
+    let [x, y] = pair.centers().map(|lanes| lanes.as_array()[lane]);
+    let [a, b, c] = pair.planes[lane / 4].inverse_w;
+    1.0 / (a * x + b * y + c)
 }
 
 /// A normal of the texture frame in world space, on the side that the eye sees.

@@ -19,22 +19,23 @@ mod cut;
 mod figures;
 mod ground;
 mod measure;
+mod ray;
 mod readings;
 mod sets;
 
 pub use cut::{Cut, CutPoint};
 pub use figures::Figure;
 pub use measure::{Measured, View, measure};
-pub use readings::{Conic, Corner, Projected, Reading};
+pub use ray::Ray;
+pub use readings::{Corner, Projected, Reading};
 pub use sets::Sets;
 
 use crate::error::{Error, Result};
-use crate::relief::HeightField;
+use crate::filter::Prepared;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::texture::{FULL_F32, Surface};
+use crate::texture::FULL_F32;
 use ground::Ground;
-use std::sync::Arc;
 
 /// What one pixel sees.
 #[derive(Clone, Debug)]
@@ -57,20 +58,7 @@ pub struct Inspection {
     pub sets: Sets,
     /// The relief along the view ray.
     pub cut: Cut,
-    surface: Arc<Surface>,
-}
-
-/// The view ray of a pixel in the texture, in repeats.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
-    /// `(u, v)` where it meets the polygon.
-    pub base: [f32; 2],
-    /// How far it moves along the texture down to the deepest relief.
-    pub displacement: [f32; 2],
-    /// The part of the relief depth at which it first meets relief, 0 to 1.
-    pub hit_depth: f32,
-    /// `(u, v)` there: `base + hit_depth * displacement`.
-    pub hit: [f32; 2],
+    prepared: Prepared,
 }
 
 /// Inspects the surface at the centre of a pixel (column, row) of the frame that the settings describe.
@@ -89,37 +77,35 @@ pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Insp
     let material = &scene.materials[ground.material];
     let surface =
         material.surface.clone().ok_or_else(|| Error::scene(name(), "sees a surface without texture coordinates"))?;
-    let is_traced = settings.parallax && surface.relief_depth > 0.0;
-    let field = is_traced.then(|| HeightField::new(&surface));
-    let quad = ground.quad(&surface, field.as_ref());
-    let sets = Sets::new(&surface, &quad, is_traced, settings);
-    let cut = Cut::new(&surface, &quad, sets.level, settings);
+    let prepared = Prepared::new(surface);
+    let prepared = if settings.parallax { prepared } else { prepared.without_relief() };
+    let seen = ground.pixel(prepared.field());
+    let sets = Sets::new(&prepared, &seen, &settings.filter);
+    let cut = Cut::new(prepared.surface(), &seen, sets.level, settings.filter.max_anisotropy());
     Ok(Inspection {
         pixel,
         mesh: ground.mesh,
         triangle: ground.triangle,
         material: ground.material,
-        relief_depth: if is_traced { surface.relief_depth } else { 0.0 },
-        ray: quad.ray,
-        readings: readings::both(&surface, sets.level, &quad, settings),
+        relief_depth: prepared.field().map_or(0.0, |field| field.relief_depth),
+        ray: seen.ray,
+        readings: readings::both(prepared.surface(), sets.level, &seen, settings.filter.max_anisotropy()),
         sets,
         cut,
-        surface,
+        prepared,
     })
 }
 
 impl Inspection {
     /// Linear red, green and blue, 0 to 1, of a texel of the level of [`Sets`], at a column and row of the endless pattern.
-    #[must_use]
     pub fn color(&self, [x, y]: [i32; 2]) -> [f32; 3] {
-        let [red_green, blue_height, _] = self.surface.levels[self.sets.level].packed(x, y);
-        let scale = self.surface.color_scale.min(1.0) / FULL_F32;
-        [red_green & 0xffff, red_green >> 16, blue_height & 0xffff].map(|c| c as f32 * scale)
+        let surface = self.prepared.surface();
+        let scale = surface.color_scale().min(1.0) / FULL_F32;
+        surface.levels()[self.sets.level].texel(x, y).color.map(|c| c * scale)
     }
 
     /// Height, 0 to 1, of a texel of the level of [`Sets`]; 1 lies on the polygon.
-    #[must_use]
     pub fn height(&self, [x, y]: [i32; 2]) -> f32 {
-        self.surface.levels[self.sets.level].height_at(x, y)
+        self.prepared.surface().levels()[self.sets.level].height_at(x, y)
     }
 }

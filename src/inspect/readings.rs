@@ -1,9 +1,9 @@
 //! Formulas (1), (2) and (3) for one pixel, in both readings.
 
-use super::ground::Quad;
-use crate::filter::Ellipse;
-use crate::settings::{Derivatives, Formulas, Settings};
-use crate::texture::Surface;
+use super::ground::QuadPixel;
+use crate::footprint::Ellipse;
+use crate::settings::{Derivatives, FootprintRule, Formulas};
+use crate::texture::{Level, Surface};
 
 /// Texture coordinates of a pixel and what the relief adds to them, in repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,19 +12,6 @@ pub struct Corner {
     pub uv: [f32; 2],
     /// What the relief adds: the paper's (m, r) at (x, y), (n, o) at (x+1, y), (p, s) at (x, y+1).
     pub offset: [f32; 2],
-}
-
-/// The ellipse `A U^2 + B U V + C V^2 = F`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conic {
-    /// Factor of U^2.
-    pub a: f32,
-    /// Factor of U V.
-    pub b: f32,
-    /// Factor of V^2.
-    pub c: f32,
-    /// The right side.
-    pub f: f32,
 }
 
 /// A pixel's projection on the texture.
@@ -37,9 +24,9 @@ pub struct Projected {
     /// Its middle in texels of the level of [`Sets`](super::Sets), whose centres lie at halves.
     pub center: [f32; 2],
     /// Formula (1) in those texels.
-    pub conic: Conic,
+    pub conic: Ellipse,
     /// The same with the reconstruction kernel added and its anisotropy bounded: whose texels are averaged.
-    pub widened: Conic,
+    pub widened: Ellipse,
     /// Area of the widened ellipse in texels.
     pub area: f32,
     /// Half axes of the widened ellipse in texels: shorter, longer. Of a printed ellipse, as if its F were that of its A,
@@ -62,53 +49,42 @@ pub struct Reading {
     pub relief: Projected,
 }
 
-impl Conic {
-    /// `(A U^2 + B U V + C V^2) / F`: up to 1 inside.
-    #[must_use]
-    pub fn r2(&self, [u, v]: [f32; 2]) -> f32 {
-        ((self.a * u + self.b * v) * u + self.c * v * v) / self.f
-    }
-}
-
-impl From<Ellipse> for Conic {
-    fn from(Ellipse { a, b, c, f }: Ellipse) -> Self {
-        Self { a, b, c, f }
-    }
-}
-
 /// The formulas as meant and as printed, in texels of a level.
-pub(super) fn both(surface: &Surface, level: usize, quad: &Quad, settings: &Settings) -> [Reading; 2] {
-    [Formulas::Meant, Formulas::Printed].map(|formulas| Reading {
-        formulas,
-        row: [quad.lane & !1, quad.lane | 1].map(|lane| corner(quad, lane)),
-        column: [quad.lane & !2, quad.lane | 2].map(|lane| corner(quad, lane)),
-        flat: projected(surface, level, quad, (Derivatives::Flat, formulas), settings),
-        relief: projected(surface, level, quad, (Derivatives::Relief, formulas), settings),
+pub(super) fn both(surface: &Surface, level: usize, seen: &QuadPixel, max_anisotropy: f32) -> [Reading; 2] {
+    let level = &surface.levels()[level];
+    let corner = |lane: usize| {
+        let [uv, offset] = seen.corner(lane);
+        Corner { uv, offset }
+    };
+    [Formulas::Meant, Formulas::Printed].map(|formulas| {
+        let projected = |derivatives| projected(level, seen, (derivatives, formulas), max_anisotropy);
+        Reading {
+            formulas,
+            row: [seen.lane & !1, seen.lane | 1].map(corner),
+            column: [seen.lane & !2, seen.lane | 2].map(corner),
+            flat: projected(Derivatives::Flat),
+            relief: projected(Derivatives::Relief),
+        }
     })
 }
 
-fn corner(quad: &Quad, lane: usize) -> Corner {
-    let at = |lanes: &[crate::simd::PixelLanes; 2]| lanes.map(|lanes| lanes.as_array()[lane]);
-    Corner { uv: at(&quad.uv), offset: at(&quad.offset) }
-}
-
 fn projected(
-    surface: &Surface,
-    level: usize,
-    quad: &Quad,
-    which: (Derivatives, Formulas),
-    settings: &Settings,
+    level: &Level,
+    seen: &QuadPixel,
+    (derivatives, formulas): (Derivatives, Formulas),
+    max_anisotropy: f32,
 ) -> Projected {
-    let footprint = quad.footprint(which);
-    let texels = surface.texels_per_repeat(level);
-    let ellipse = Ellipse::new(&footprint, texels, which.1);
-    let widened = ellipse.widened(settings.max_anisotropy, which.1);
+    // Formula (2) stands around the place on the polygon, formula (3) around the hit.
+    let is_traced = derivatives == Derivatives::Relief;
+    let footprint = seen.footprint(&FootprintRule { derivatives, formulas, max_stretch: 0.0, is_traced });
+    let conic = Ellipse::new(&footprint, level.texels_per_repeat(), formulas);
+    let widened = conic.widened(max_anisotropy, formulas);
     Projected {
         dx: footprint.dx,
         dy: footprint.dy,
-        center: [footprint.center[0] * texels[0], footprint.center[1] * texels[1]],
-        conic: ellipse.into(),
-        widened: widened.into(),
+        center: level.in_texels(footprint.hit),
+        conic,
+        widened,
         area: widened.area(),
         half_axes: widened.squared_axes().map(f32::sqrt),
     }

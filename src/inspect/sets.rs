@@ -1,23 +1,23 @@
 //! The paper's sets of texels for one pixel.
 
-use super::ground::Quad;
-use super::readings::Conic;
-use crate::filter::visible::{Occlusion, remove_hidden};
-use crate::filter::{TexelSet, level_within_budget};
-use crate::settings::{Filter, Settings, Visibility};
-use crate::texture::Surface;
+use super::ground::QuadPixel;
+use crate::filter::Prepared;
+use crate::filter::visible::{Occlusion, TexelSet, remove_hidden};
+use crate::footprint::Ellipse;
+use crate::footprint::levels::EllipseRule;
+use crate::settings::{Filter, Visibility, Visible};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The texels of a pixel's ellipse. A texel is its column and row in the endless pattern of a mip level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sets {
-    /// The mip level, the finest whose ellipse holds no more texels than the settings' budget.
+    /// The mip level that the filter reads.
     pub level: usize,
     /// Texels of that level a repeat, along u and v.
     pub texels_per_repeat: [f32; 2],
     /// The ellipse in texels: that of formula (2) or (3), or of both where the relief jumps (see
-    /// [`Settings::max_stretch`](crate::Settings)).
-    pub ellipse: Conic,
+    /// [`Visible::max_stretch`]).
+    pub ellipse: Ellipse,
     /// Texels down to the deepest relief, along u and v.
     pub displacement: [f32; 2],
     /// T: the texels whose centre lies in the widened ellipse around the hit.
@@ -36,19 +36,29 @@ pub struct Sets {
 }
 
 impl Sets {
-    /// The sets of a quad's pixel; without traced relief nothing is hidden.
-    pub(super) fn new(surface: &Surface, quad: &Quad, is_traced: bool, settings: &Settings) -> Self {
-        // All texels of the ellipse are the set of `Ewa`; any other filter is shown the paper's.
-        let filter = if settings.filter == Filter::Ewa { Filter::Ewa } else { Filter::Visible };
-        let settings = &Settings { filter, ..settings.clone() };
-        let footprint = quad.filtered(settings);
-        let (level, ellipse) = level_within_budget(surface, &footprint, settings);
-        let texels = surface.texels_per_repeat(level);
-        let scaled = |p: [f32; 2]| [p[0] * texels[0], p[1] * texels[1]];
+    /// The sets of a pixel for a filter: those of the ellipse of `Ewa` or `Visible`, on the level that the filter reads; any
+    /// other filter is shown the paper's.
+    pub(super) fn new(prepared: &Prepared, seen: &QuadPixel, filter: &Filter) -> Self {
+        let shown = match filter {
+            Filter::Ewa(_) | Filter::Visible(_) => *filter,
+            Filter::Nearest
+            | Filter::Bilinear
+            | Filter::Trilinear(_)
+            | Filter::Horizon(_)
+            | Filter::Parallax(_)
+            | Filter::Truth(_) => Filter::Visible(Visible::default()),
+        };
+        let rule = shown.footprint_rule();
+        let footprint = seen.footprint(&rule);
+        let number = shown.level(prepared, &footprint).level;
+        let level = &prepared.surface().levels()[number];
+        let formulas = rule.formulas;
+        let ellipse = EllipseRule { formulas, texel_budget: 0, max_anisotropy: shown.max_anisotropy() };
+        let ellipse = ellipse.ellipse(&footprint, level);
         let mut set = TexelSet::default();
-        set.fill_ellipse(&ellipse, scaled(footprint.center));
-        let displacement = scaled(quad.ray.displacement);
-        let occlusion = is_traced.then(|| Occlusion::new(&surface.levels[level], displacement));
+        set.fill_ellipse(&ellipse, level.in_texels(footprint.hit));
+        let displacement = level.in_texels(seen.ray.displacement);
+        let occlusion = prepared.field().map(|_| Occlusion::new(level, displacement));
         let kept = |how: Visibility| {
             let mut kept = set.clone();
             if let Some(occlusion) = &occlusion {
@@ -61,12 +71,12 @@ impl Sets {
         let (visible, hidden): (Vec<_>, Vec<_>) = all.iter().partition(|&texel| exact.contains(texel));
         let covered_by: Vec<_> = occlusion
             .iter()
-            .flat_map(|occlusion| hidden.iter().map(|&texel| [texel, seen(occlusion, texel)]))
+            .flat_map(|occlusion| hidden.iter().map(|&texel| [texel, seen_instead(occlusion, texel)]))
             .collect();
         Self {
-            level,
-            texels_per_repeat: texels,
-            ellipse: ellipse.into(),
+            level: number,
+            texels_per_repeat: level.texels_per_repeat(),
+            ellipse,
             displacement,
             skipped: visible.iter().copied().filter(|texel| !two_ended.contains(texel)).collect(),
             counted_twice: counted_twice(&visible, &covered_by),
@@ -79,7 +89,7 @@ impl Sets {
 }
 
 /// The visible texel that is seen in a hidden one's place.
-fn seen(occlusion: &Occlusion, texel: [i32; 2]) -> [i32; 2] {
+fn seen_instead(occlusion: &Occlusion, texel: [i32; 2]) -> [i32; 2] {
     let mut texel = texel;
     // Each coverer is nearer to the eye, so the chain ends.
     while let Some(coverer) = occlusion.coverer(texel[0], texel[1]) {

@@ -1,6 +1,7 @@
 //! What must hold of marches, coverage and whole frames.
 
-use super::{Checked, Pixel, ensure};
+use super::{Checked, ensure};
+use crate::footprint::Footprint;
 use crate::geometry::project;
 use crate::raster::hit_counts;
 use crate::reference::{Ray, first_hit};
@@ -16,12 +17,11 @@ use glam::Vec3;
 ///
 /// # Errors
 /// Says what broke.
-pub fn march_finds_first_hit(surface: &Surface, pixel: &Pixel) -> Checked {
-    let Pixel { footprint, displacement } = pixel;
+pub fn march_finds_first_hit(surface: &Surface, pixel: &Footprint) -> Checked {
     let lanes = |v: [f32; 2]| v.map(PixelLanes::splat);
-    let found = march(&HeightField::new(surface), &lanes(footprint.center), &lanes(*displacement)).to_array()[0];
+    let found = march(&HeightField::new(surface), &lanes(pixel.base), &lanes(pixel.displacement)).to_array()[0];
     ensure((0.0..=1.0).contains(&found), || format!("depth {found}"))?;
-    let (level, ray) = (&surface.levels[0], Ray::new(surface, footprint.center, *displacement));
+    let (level, ray) = (surface.base(), Ray::new(surface, pixel.base, pixel.displacement));
     let (found, expected) = (f64::from(found), first_hit(level, &ray, 64.0));
     let texels = ray.displacement[0].abs().max(ray.displacement[1].abs());
     // The place itself is known to an f32's digits of the texture coordinate.

@@ -1,7 +1,8 @@
 //! What holds of any weighted mean of texels: linear in the texture, the same for the same ellipse, untouched by flat relief.
 
-use super::{Checked, Pixel, difference, ensure, filtered};
-use crate::settings::{Filter, Settings};
+use super::{Checked, difference, ensure, filtered};
+use crate::footprint::Footprint;
+use crate::settings::{Filter, Visible};
 use crate::texture::{ColorImage, HeightImage, Surface, SurfaceMaps};
 
 /// How far the mean of two colours may be from the colour of the mean texture: texels are stored in 15 bits, and each mip
@@ -18,14 +19,14 @@ fn with_albedo(maps: &SurfaceMaps, albedo: ColorImage) -> Result<Surface, String
 ///
 /// # Errors
 /// Says what broke, or why the maps are no surface.
-pub fn linear_in_texture(maps: &SurfaceMaps, other: &ColorImage, pixel: &Pixel, settings: &Settings) -> Checked {
+pub fn linear_in_texture(maps: &SurfaceMaps, other: &ColorImage, pixel: &Footprint, filter: &Filter) -> Checked {
     let white = || ColorImage { texels: vec![[65535; 3]; other.texels.len()], ..other.clone() };
     let one = maps.albedo.clone().unwrap_or_else(white);
     ensure(one.texels.len() == other.texels.len() && one.scale == other.scale, || "albedos differ in size".into())?;
     let mean = |a: u16, b: u16| ((u32::from(a) + u32::from(b)) / 2) as u16;
     let texels = one.texels.iter().zip(&other.texels).map(|(a, b)| [0, 1, 2].map(|i| mean(a[i], b[i]))).collect();
     let both = ColorImage { texels, ..one.clone() };
-    let color = |albedo| Ok::<_, String>(filtered(&with_albedo(maps, albedo)?, pixel, settings));
+    let color = |albedo| Ok::<_, String>(filtered(&with_albedo(maps, albedo)?, pixel, filter));
     let (a, b, both) = (color(one)?, color(other.clone())?, color(both)?);
     let expected = [0, 1, 2].map(|i| (a[i] + b[i]) * 0.5);
     ensure(difference(expected, both) <= STORED_ROUNDING, || format!("{a:?} and {b:?} have the mean {both:?}"))
@@ -35,14 +36,14 @@ pub fn linear_in_texture(maps: &SurfaceMaps, other: &ColorImage, pixel: &Pixel, 
 ///
 /// # Errors
 /// Says what broke.
-pub fn same_for_same_ellipse(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Checked {
-    let expected = filtered(surface, pixel, settings);
+pub fn same_for_same_ellipse(surface: &Surface, pixel: &Footprint, filter: &Filter) -> Checked {
+    let expected = filtered(surface, pixel, filter);
     let negated = |d: [f32; 2]| d.map(|c| -c);
-    let [dx, dy] = [pixel.footprint.dx, pixel.footprint.dy];
+    let [dx, dy] = [pixel.dx, pixel.dy];
     for [dx, dy] in [[dy, dx], [negated(dx), dy], [dx, negated(dy)], [negated(dy), negated(dx)]] {
         let mut other = *pixel;
-        (other.footprint.dx, other.footprint.dy) = (dx, dy);
-        let found = filtered(surface, &other, settings);
+        (other.dx, other.dy) = (dx, dy);
+        let found = filtered(surface, &other, filter);
         ensure(found == expected, || format!("{expected:?} became {found:?} with dx {dx:?}, dy {dy:?}"))?;
     }
     Ok(())
@@ -52,11 +53,11 @@ pub fn same_for_same_ellipse(surface: &Surface, pixel: &Pixel, settings: &Settin
 ///
 /// # Errors
 /// Says what broke, or why the maps are no surface.
-pub fn flat_relief_hides_nothing(maps: &SurfaceMaps, height: u16, pixel: &Pixel, settings: &Settings) -> Checked {
+pub fn flat_relief_hides_nothing(maps: &SurfaceMaps, height: u16, pixel: &Footprint, visible: &Visible) -> Checked {
     let flat = HeightImage { width: 1, height: 1, texels: vec![height] };
     let surface = Surface::new(SurfaceMaps { height: Some(flat), ..maps.clone() }).map_err(|e| e.to_string())?;
-    let settings = Settings { filter: Filter::Visible, ..settings.clone() };
-    let from = |displacement| filtered(&surface, &Pixel { displacement, ..*pixel }, &settings);
+    let filter = Filter::Visible(*visible);
+    let from = |displacement| filtered(&surface, &Footprint { displacement, ..*pixel }, &filter);
     let (all, visible) = (from([0.0; 2]), from(pixel.displacement));
     ensure(all == visible, || format!("{visible:?} is left of {all:?} at height {height}"))
 }

@@ -1,25 +1,24 @@
 //! What must hold of the filters for any texture, footprint and view: for property tests and fuzzing, yours included.
 //!
-//! Each function checks one property for one pixel and says in one line what broke. A [`Pixel`] is a footprint and a view
-//! in texture space; [`Pixel::new`] takes any numbers, NaN and infinity included, and bounds them as the renderer does.
-//! The filter that is checked is that of the [`Settings`](crate::Settings).
+//! Each function checks one property for one pixel and says in one line what broke. A [`Footprint`] is a pixel in
+//! texture space; [`Footprint::bounded`] makes one of any numbers, NaN and infinity included, as the renderer does.
 //!
 //! To fuzz your own textures and settings:
 //!
 //! ```
-//! use basrelief::invariants::{self, Pixel};
+//! use basrelief::invariants::{self, Footprint};
 //! use basrelief::texture::{HeightImage, Surface, SurfaceMaps};
-//! use basrelief::{Filter, Settings};
+//! use basrelief::{Filter, Visible};
 //! use proptest::prelude::*;
 //!
 //! let stairs = HeightImage::from_fn(16, 16, |x, _| x as f32 / 15.0);
 //! let surface = Surface::new(SurfaceMaps { height: Some(stairs), relief_depth: 0.1, ..Default::default() })?;
-//! let settings = Settings { filter: Filter::Visible, texel_budget: 64, ..Default::default() };
+//! let visible = Visible { texel_budget: 64, ..Default::default() };
 //! let place = || prop::array::uniform2(-1.0_f32..1.0);
 //! proptest!(|(center in place(), dx in place(), dy in place(), view in place())| {
-//!     let pixel = Pixel::new(center, dx, dy, view);
-//!     invariants::visible_sets(&surface, &pixel, &settings).map_err(TestCaseError::fail)?;
-//!     invariants::within_texels(&surface, &pixel, &settings).map_err(TestCaseError::fail)?;
+//!     let pixel = Footprint::new(center, dx, dy, view).bounded();
+//!     invariants::visible_sets(&surface, &pixel, &visible).map_err(TestCaseError::fail)?;
+//!     invariants::within_texels(&surface, &pixel, &Filter::Visible(visible)).map_err(TestCaseError::fail)?;
 //! });
 //! # Ok::<(), basrelief::Error>(())
 //! ```
@@ -31,10 +30,10 @@ mod sets;
 mod symmetry;
 mod weights;
 
-pub use crate::filter::Footprint;
+pub use crate::footprint::Footprint;
 pub use frames::{fan_is_hit_once, frame_is_finite, march_finds_first_hit};
 pub use means::{flat_relief_hides_nothing, linear_in_texture, same_for_same_ellipse};
-pub use pixel::{Pixel, anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels, work_is_bounded};
+pub use pixel::{anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels, work_is_bounded};
 pub use sets::visible_sets;
 pub use symmetry::{mirrored, same_when_scaled, shifted, turned};
 pub use weights::{horizon_weights, records_are_visible};

@@ -1,9 +1,11 @@
 //! The paper's sets of texels.
 
-use super::{Checked, Pixel, ensure};
-use crate::filter::visible::{Occlusion, remove_hidden};
-use crate::filter::{self, TexelSet, isotropic, level_within_budget};
-use crate::settings::{Filter, Settings, Visibility};
+use super::{Checked, ensure};
+use crate::filter::points;
+use crate::filter::visible::{self, Occlusion, TexelSet, remove_hidden};
+use crate::footprint::Footprint;
+use crate::footprint::levels::within_budget;
+use crate::settings::{Visibility, Visible};
 use crate::texture::Surface;
 use std::collections::BTreeSet;
 
@@ -15,11 +17,10 @@ type Texels = BTreeSet<[i32; 2]>;
 ///
 /// # Errors
 /// Says what broke.
-pub fn visible_sets(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Checked {
-    let (index, ellipse) = level_within_budget(surface, &pixel.footprint, settings);
-    let (level, texels) = (&surface.levels[index], surface.texels_per_repeat(index));
-    let [center, displacement] =
-        [pixel.footprint.center, pixel.displacement].map(|p| [p[0] * texels[0], p[1] * texels[1]]);
+pub fn visible_sets(surface: &Surface, pixel: &Footprint, visible: &Visible) -> Checked {
+    let (index, ellipse) = within_budget(surface, pixel, &visible::ellipse_rule(visible));
+    let level = &surface.levels()[index];
+    let [center, displacement] = [pixel.hit, pixel.displacement].map(|p| level.in_texels(p));
     let mut all = TexelSet::default();
     all.fill_ellipse(&ellipse, center);
     let occlusion = Occlusion::new(level, displacement);
@@ -37,11 +38,11 @@ pub fn visible_sets(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Ch
     ensure(miscovered.is_none(), || format!("{miscovered:?} is both visible and covered, or neither"))?;
     ensure(two_ended.is_subset(&exact), || format!("two-ended takes hidden {:?}", two_ended.difference(&exact)))?;
     ensure(resolved == exact, || format!("resolved differs by {:?}", resolved.symmetric_difference(&exact)))?;
-    let settings = Settings { filter: Filter::Visible, visibility: Visibility::Exact, ..settings.clone() };
-    let (mean, [_, num]) =
-        filter::ellipse_mean(surface, &pixel.footprint, Some(pixel.displacement), &settings, &mut TexelSet::default());
+    let exactly = Visible { visibility: Visibility::Exact, ..*visible };
+    let (mean, work) = visible::mean(surface, pixel, &exactly, &mut TexelSet::default());
+    let num = work.num_averaged;
     ensure(num == exact.len() as u64, || format!("{num} texels counted of {}", exact.len()))?;
-    let fallback = isotropic::bilinear(surface, index, pixel.footprint.center);
+    let fallback = points::bilinear(level, pixel.hit);
     ensure(num > 0 || mean == fallback, || format!("{mean:?} from no texel, {fallback:?} at the hit"))
 }
 

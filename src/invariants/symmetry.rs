@@ -4,18 +4,18 @@
 //! on the very edge of an ellipse belong to it, so the callers state the tolerance.
 
 use super::pixel::on_base_level;
-use super::{Checked, Pixel, difference, ensure, filtered};
-use crate::filter::TexelSet;
-use crate::filter::visible::{Occlusion, remove_hidden};
+use super::{Checked, difference, ensure, filtered};
+use crate::filter::visible::{Occlusion, TexelSet, remove_hidden};
+use crate::footprint::Footprint;
 use crate::reference::{RAY_TIE, ray_margin};
-use crate::settings::{Filter, Settings, Visibility};
+use crate::settings::{Filter, Horizon, Visibility};
 use crate::texture::{ColorImage, HeightImage, Surface, SurfaceMaps};
 use std::collections::BTreeSet;
 
 /// The same pixel of two textures.
-fn agree(maps: [SurfaceMaps; 2], pixels: [&Pixel; 2], settings: &Settings, tolerance: f32) -> Checked {
+fn agree(maps: [SurfaceMaps; 2], pixels: [&Footprint; 2], filter: &Filter, tolerance: f32) -> Checked {
     let [a, b] = maps.map(|maps| Surface::new(maps).map_err(|e| e.to_string()));
-    let [a, b] = [filtered(&a?, pixels[0], settings), filtered(&b?, pixels[1], settings)];
+    let [a, b] = [filtered(&a?, pixels[0], filter), filtered(&b?, pixels[1], filter)];
     let error = difference(a, b);
     ensure(error <= tolerance, || format!("{a:?} became {b:?}, {error} apart"))
 }
@@ -51,45 +51,46 @@ fn size(maps: &SurfaceMaps) -> [u32; 2] {
 ///
 /// # Errors
 /// Says what broke.
-pub fn shifted(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings, by: [u32; 2], tolerance: f32) -> Checked {
+pub fn shifted(maps: &SurfaceMaps, pixel: &Footprint, filter: &Filter, by: [u32; 2], tolerance: f32) -> Checked {
     let back = |[x, y]: [u32; 2], [w, h]: [u32; 2]| [(x + w - by[0] % w) % w, (y + h - by[1] % h) % h];
     let mut there = *pixel;
     let [w, h] = size(maps);
-    there.footprint.center[0] += by[0] as f32 / w as f32;
-    there.footprint.center[1] += by[1] as f32 / h as f32;
-    agree([maps.clone(), moved(maps, false, back)], [pixel, &there], settings, tolerance)
+    there.base[0] += by[0] as f32 / w as f32;
+    there.base[1] += by[1] as f32 / h as f32;
+    there.hit = there.base;
+    agree([maps.clone(), moved(maps, false, back)], [pixel, &there], filter, tolerance)
 }
 
 /// A texture turned by 90 degrees with the pixel gives the same colour.
 ///
 /// # Errors
 /// Says what broke.
-pub fn turned(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings, tolerance: f32) -> Checked {
+pub fn turned(maps: &SurfaceMaps, pixel: &Footprint, filter: &Filter, tolerance: f32) -> Checked {
     let turn = |[u, v]: [f32; 2]| [-v, u];
     let mut there = *pixel;
-    let footprint = &mut there.footprint;
     // About the texture's middle, so that texels come to lie on texels.
-    footprint.center = [1.0 - footprint.center[1], footprint.center[0]];
-    (footprint.dx, footprint.dy) = (turn(footprint.dx), turn(footprint.dy));
+    there.base = [1.0 - there.base[1], there.base[0]];
+    there.hit = there.base;
+    (there.dx, there.dy) = (turn(there.dx), turn(there.dy));
     there.displacement = turn(there.displacement);
     // The new (x, y) was at (y, h - 1 - x).
     let turned = moved(maps, true, |[x, y], [_, h]| [y, h - 1 - x]);
-    agree([maps.clone(), turned], [pixel, &there], settings, tolerance)
+    agree([maps.clone(), turned], [pixel, &there], filter, tolerance)
 }
 
 /// A texture mirrored along u with the pixel gives the same colour.
 ///
 /// # Errors
 /// Says what broke.
-pub fn mirrored(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings, tolerance: f32) -> Checked {
+pub fn mirrored(maps: &SurfaceMaps, pixel: &Footprint, filter: &Filter, tolerance: f32) -> Checked {
     let flip = |[u, v]: [f32; 2]| [-u, v];
     let mut there = *pixel;
-    let footprint = &mut there.footprint;
-    footprint.center[0] = 1.0 - footprint.center[0];
-    (footprint.dx, footprint.dy) = (flip(footprint.dx), flip(footprint.dy));
+    there.base[0] = 1.0 - there.base[0];
+    there.hit = there.base;
+    (there.dx, there.dy) = (flip(there.dx), flip(there.dy));
     there.displacement = flip(there.displacement);
     let mirrored = moved(maps, false, |[x, y], [w, _]| [w - 1 - x, y]);
-    agree([maps.clone(), mirrored], [pixel, &there], settings, tolerance)
+    agree([maps.clone(), mirrored], [pixel, &there], filter, tolerance)
 }
 
 /// Relief of half the height under a view of twice the slope hides the same texels, up to ties, and the horizon gives the
@@ -98,25 +99,24 @@ pub fn mirrored(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings, toleranc
 ///
 /// # Errors
 /// Says what broke.
-pub fn same_when_scaled(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings, tolerance: f32) -> Checked {
+pub fn same_when_scaled(maps: &SurfaceMaps, pixel: &Footprint, horizon: &Horizon, tolerance: f32) -> Checked {
     let mut shallow = maps.clone();
     if let Some(heights) = &mut shallow.height {
         heights.texels.iter_mut().for_each(|h| *h = 2 * (32767 - (32767 - *h / 2) / 2));
     }
     let mut slanted = *pixel;
     slanted.displacement = slanted.displacement.map(|d| d * 2.0);
-    let visible = |maps: &SurfaceMaps, pixel: &Pixel| {
+    let visible = |maps: &SurfaceMaps, pixel: &Footprint| {
         let surface = Surface::new(maps.clone()).map_err(|e| e.to_string())?;
-        let (ellipse, [center, displacement]) = on_base_level(&surface, pixel, settings);
+        let (ellipse, [center, displacement]) = on_base_level(&surface, pixel, horizon.max_anisotropy);
         let mut set = TexelSet::default();
         set.fill_ellipse(&ellipse, center);
-        remove_hidden(&mut set, &Occlusion::new(&surface.levels[0], displacement), Visibility::Exact);
-        let margin = move |texel| ray_margin(&surface.levels[0], texel, displacement.map(f64::from));
+        remove_hidden(&mut set, &Occlusion::new(surface.base(), displacement), Visibility::Exact);
+        let margin = move |texel| ray_margin(surface.base(), texel, displacement.map(f64::from));
         Ok::<_, String>((set.iter().collect::<BTreeSet<_>>(), margin))
     };
     let ((deep, margin), (flat, _)) = (visible(maps, pixel)?, visible(&shallow, &slanted)?);
     let differs = deep.symmetric_difference(&flat).find(|texel| margin(**texel).abs() > 2.0 * RAY_TIE);
     ensure(differs.is_none(), || format!("{differs:?} is visible in one of the two"))?;
-    let settings = Settings { filter: Filter::Horizon, ..settings.clone() };
-    agree([maps.clone(), shallow], [pixel, &slanted], &settings, tolerance)
+    agree([maps.clone(), shallow], [pixel, &slanted], &Filter::Horizon(*horizon), tolerance)
 }

@@ -1,9 +1,10 @@
 //! The weights of the floating horizon, seen through textures in which one texel at a time is lit.
 
 use super::pixel::on_base_level;
-use super::{Checked, Pixel, ensure, filtered};
+use super::{Checked, ensure, filtered};
 use crate::reference::{Conic, Lines, RAY_TIE, ray_margin, texels};
-use crate::settings::{Filter, Settings};
+use crate::footprint::Footprint;
+use crate::settings::{Filter, Horizon};
 use crate::texture::{ColorImage, Surface, SurfaceMaps};
 
 /// How far the weights of all texels may be from adding up to 1: in f32, and by what a mip level rounds each texel.
@@ -15,17 +16,17 @@ const TEXEL_ROUNDING: f64 = 1.0 / 32767.0;
 ///
 /// # Errors
 /// Says what broke.
-pub fn horizon_weights(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings) -> Checked {
-    let size = Surface::new(maps.clone()).map_err(|e| e.to_string())?.levels[0].clone();
-    let settings = Settings { filter: Filter::Horizon, ..settings.clone() };
+pub fn horizon_weights(maps: &SurfaceMaps, pixel: &Footprint, horizon: &Horizon) -> Checked {
+    let size = Surface::new(maps.clone()).map_err(|e| e.to_string())?.base().size();
+    let filter = Filter::Horizon(*horizon);
     let repeats = if maps.wrap == crate::texture::Wrap::Mirror { 2 } else { 1 };
-    let (w, h) = (size.width as u32 / repeats, size.height as u32 / repeats);
+    let (w, h) = (size[0] as u32 / repeats, size[1] as u32 / repeats);
     let mut sum = 0.0;
     for first in (0..w * h).step_by(3) {
         let lit = |x: u32, y: u32| [0, 1, 2].map(|i| if y * w + x == first + i { 1.0 } else { 0.0 });
         let maps = SurfaceMaps { albedo: Some(ColorImage::from_fn(w, h, lit)), ..maps.clone() };
         let surface = Surface::new(maps).map_err(|e| e.to_string())?;
-        let color = filtered(&surface, pixel, &settings);
+        let color = filtered(&surface, pixel, &filter);
         ensure(color.iter().all(|c| *c >= 0.0), || format!("texels {first} to {} weigh {color:?}", first + 2))?;
         sum += color.iter().map(|c| f64::from(*c)).sum::<f64>();
     }
@@ -38,9 +39,9 @@ pub fn horizon_weights(maps: &SurfaceMaps, pixel: &Pixel, settings: &Settings) -
 ///
 /// # Errors
 /// Says what broke.
-pub fn records_are_visible(surface: &Surface, pixel: &Pixel, settings: &Settings) -> Checked {
-    let level = &surface.levels[0];
-    let (ellipse, [center, displacement]) = on_base_level(surface, pixel, settings);
+pub fn records_are_visible(surface: &Surface, pixel: &Footprint, max_anisotropy: f32) -> Checked {
+    let level = surface.base();
+    let (ellipse, [center, displacement]) = on_base_level(surface, pixel, max_anisotropy);
     let (conic, center, displacement) = (Conic::from(&ellipse), center.map(f64::from), displacement.map(f64::from));
     for (texel, _) in texels(&conic, center, 0.0).into_iter().take(1024) {
         let margin = ray_margin(level, texel, displacement);

@@ -96,7 +96,7 @@ impl<'a> PlaneMaker<'a> {
     fn needs_view(&self, corners: &Corners) -> bool {
         let is_flat = |mesh: &Mesh| {
             let surface = self.scene.materials[mesh.material].surface.as_ref();
-            mesh.tex_coords.is_empty() || surface.is_some_and(|surface| surface.relief_depth == 0.0)
+            mesh.tex_coords.is_empty() || surface.is_some_and(|surface| surface.relief_depth() == 0.0)
         };
         self.parallax && !is_flat(corners.mesh)
     }

@@ -1,7 +1,6 @@
 //! The pixels of one tile while their colours are added up.
 
 use super::gather::SeenQuad;
-use super::quad::covered;
 use crate::frame::Pixel;
 use crate::simd::{PixelLanes, quads_by_pixel};
 
@@ -36,7 +35,7 @@ impl Canvas {
         let mut num = 0;
         for (i, quad) in pair.iter().enumerate() {
             let [x, y] = quad.origin.map(usize::from);
-            for lane in covered(u64::from(u32::from_le_bytes(quad.coverage))) {
+            for lane in (0..4).filter(|lane| quad.coverage[*lane] > 0) {
                 let pixel = &mut self.pixels[(y + lane / 2) * self.stride + x + lane % 2];
                 let share = f32::from(quad.coverage[lane]) * share;
                 let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);

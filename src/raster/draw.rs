@@ -9,7 +9,8 @@ use super::block::{QuadBlock, SHADED_BLOCK};
 use super::edge::Rect;
 use super::gather::{SeenQuad, gather};
 use super::quad::{AttributePlanes, QuadPair};
-use super::scratch::{Borrowed, Scratch};
+use super::pool::Pool;
+use super::scratch::Scratch;
 use super::tile::NONE;
 use crate::frame::{Frame, Pixel};
 use crate::geometry::{Geometry, ScreenTriangle};
@@ -17,7 +18,6 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::simd::PixelLanes;
 use rayon::prelude::*;
-use std::sync::Mutex;
 
 /// What was drawn, and what it took. Times are in milliseconds, of all threads together but for `binning_ms`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,7 +56,7 @@ impl RasterStats {
 #[derive(Debug, Default)]
 pub struct Rasterizer {
     bins: Bins,
-    scratches: Mutex<Vec<Scratch>>,
+    scratches: Pool<Scratch>,
 }
 
 /// Draws one frame, shaded pair by pair; see [`Rasterizer::draw`].
@@ -90,7 +90,7 @@ impl Rasterizer {
         [frame.width, frame.height] = grid.area.size().map(|side| side as u32);
         let num_pixels = frame.width as usize * frame.height as usize;
         if frame.pixels.len() != num_pixels {
-            // Zeros of the system's, which it hands out page by page to the threads that draw.
+            // `vec![0; n]` is zeroed lazily by the system, on the thread that first touches a page.
             frame.pixels = vec![P::default(); num_pixels];
         }
         let painter = Painter { geometry, scene, settings, grid, bins: &self.bins, clock };
@@ -100,8 +100,8 @@ impl Rasterizer {
             .par_chunks_mut(grid.tile_size as usize)
             .enumerate()
             .map_init(
-                || Borrowed::new(scratches),
-                |scratch, (tile, rows)| painter.paint(tile, rows, scratch.get(), shade),
+                || scratches.take(),
+                |scratch, (tile, rows)| painter.paint(tile, rows, scratch, shade),
             )
             .reduce(RasterStats::default, RasterStats::add);
         RasterStats { triangles_drawn: geometry.num_triangles() as u64, binning_ms, ..tiles }

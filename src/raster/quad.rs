@@ -5,7 +5,7 @@
 //! so its bits depend on the place and the triangle only.
 
 pub use crate::geometry::Plane;
-use crate::simd::PixelLanes;
+use crate::simd::{PixelLanes, set_bits};
 
 /// Everything that varies over one triangle.
 #[derive(Clone, Debug, Default)]
@@ -67,26 +67,16 @@ pub struct QuadPair<'a> {
 impl AttributePlanes {
     /// Texture coordinates and the view in the texture frame at eight places of the screen, in pixels. Where the triangle's
     /// plane lies beyond its horizon they may be anything, infinite and NaN included.
-    #[must_use]
     #[inline]
     pub fn at(&self, x: PixelLanes, y: PixelLanes) -> ([PixelLanes; 2], [PixelLanes; 3]) {
         let at = Places::<true> { x, y, planes: [self, self] };
         let w = at.w();
         (at.attributes(w, |planes| &planes.uv), at.attributes(w, |planes| &planes.view))
     }
-
-    /// World-space attributes at eight places of the screen, in pixels; `None` unless kept.
-    #[must_use]
-    #[inline]
-    pub fn lit_at(&self, x: PixelLanes, y: PixelLanes) -> Option<LitLanes> {
-        let at = Places::<true> { x, y, planes: [self, self] };
-        at.lit(at.w())
-    }
 }
 
 impl<'a> QuadPair<'a> {
     /// Two quads with their attributes at the pixel centres.
-    #[must_use]
     #[inline(always)]
     pub fn new(material: usize, origin: [[i32; 2]; 2], coverage: [u8; 8], planes: [&'a AttributePlanes; 2]) -> Self {
         let [x, y] = centers(origin);
@@ -100,52 +90,45 @@ impl<'a> QuadPair<'a> {
     }
 
     /// The ray from the eye in the texture frame at the pixel centres (see [`AttributePlanes::view`]).
-    #[must_use]
     #[inline(always)]
     pub fn view(&self) -> [PixelLanes; 3] {
         let [x, y] = self.centers();
         Places::<false> { x, y, planes: self.planes }.attributes(self.w, |planes| &planes.view)
     }
 
+    /// A bit for each lane whose pixel sees the triangle.
+    #[inline(always)]
+    pub fn covered_bits(&self) -> u8 {
+        // A byte is at most 8, so nothing is carried to the next one: its highest bit says whether it is above 0.
+        let is_covered = (u64::from_le_bytes([0x7f; 8]) + u64::from_le_bytes(self.coverage)) & u64::from_le_bytes([0x80; 8]);
+        // Bit 8 i + 7 of the product's factor moves to bit 56 + i: one set bit of the other, 49 - 7 i, for each byte.
+        (is_covered.wrapping_mul(0x0002_0408_1020_4081) >> 56) as u8
+    }
+
     /// The lanes whose pixels see the triangle, in order.
     #[inline(always)]
     pub fn covered(&self) -> impl Iterator<Item = usize> + use<> {
-        covered(u64::from_le_bytes(self.coverage))
+        set_bits(self.covered_bits())
     }
 
-    /// Whether all pixels see the triangle.
-    #[must_use]
-    #[inline(always)]
-    pub fn is_whole(&self) -> bool {
-        // A byte is at most 8, so nothing is carried to the next one.
-        let ones = u64::from_le_bytes([0x7f; 8]) + u64::from_le_bytes(self.coverage);
-        ones & !u64::from_le_bytes([0x7f; 8]) == !u64::from_le_bytes([0x7f; 8])
+    /// Column and row of a lane's pixel.
+    pub fn pixel(&self, lane: usize) -> [i32; 2] {
+        let [x, y] = self.origin[lane / 4];
+        [x + (lane as i32 & 1), y + (lane as i32 >> 1 & 1)]
     }
 
     /// The pixel centres on the screen, in pixels: x, y.
-    #[must_use]
     #[inline]
     pub fn centers(&self) -> [PixelLanes; 2] {
         centers(self.origin)
     }
 
     /// World-space attributes at the pixel centres; `None` unless lit.
-    #[must_use]
     #[inline]
     pub fn lit(&self) -> Option<LitLanes> {
         let [x, y] = self.centers();
         Places::<false> { x, y, planes: self.planes }.lit(self.w)
     }
-}
-
-/// The places of the bytes that are not 0, lowest first.
-#[inline(always)]
-pub(super) fn covered(mut bytes: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = bytes.trailing_zeros() / 8;
-        bytes &= !(0xff_u64.checked_shl(8 * lane)?);
-        Some(lane as usize)
-    })
 }
 
 #[inline(always)]

@@ -1,15 +1,15 @@
 //! Formulas (1), (2) and (3) as the paper prints them and as they are meant.
 
-use crate::settings::{Derivatives, Formulas};
+use crate::settings::{Derivatives, FootprintRule, Formulas};
 
 /// `[du/dx, dv/dx, du/dy, dv/dy]` from coordinates `[u, v]` and relief offsets at (x, y), (x+1, y) and (x, y+1).
 ///
 /// The letters are the paper's: offsets (m, r) at (x, y), (n, o) at (x+1, y), (p, s) at (x, y+1).
 #[must_use]
-pub fn derivatives(uv: [[f32; 2]; 3], offsets: [[f32; 2]; 3], which: (Derivatives, Formulas)) -> [f32; 4] {
+pub fn derivatives(uv: [[f32; 2]; 3], offsets: [[f32; 2]; 3], rule: &FootprintRule) -> [f32; 4] {
     let [[u, v], [u_right, v_right], [u_below, v_below]] = uv;
     let [[m, r], [n, o], [p, s]] = offsets;
-    match which {
+    match (rule.derivatives, rule.formulas) {
         (Derivatives::Flat, Formulas::Meant) => [u_right - u, v_right - v, u_below - u, v_below - v],
         (Derivatives::Flat, Formulas::Printed) => [u_right - u, v_right - u, u_below - u, v_below - u],
         (Derivatives::Relief, Formulas::Meant) => {
@@ -67,8 +67,8 @@ impl Conic {
     }
 }
 
-impl From<&crate::filter::Ellipse> for Conic {
-    fn from(ellipse: &crate::filter::Ellipse) -> Self {
+impl From<&crate::footprint::Ellipse> for Conic {
+    fn from(ellipse: &crate::footprint::Ellipse) -> Self {
         let [a, b, c, f] = [ellipse.a, ellipse.b, ellipse.c, ellipse.f].map(f64::from);
         Self { a, b, c, f }
     }

@@ -22,13 +22,12 @@ use crate::texture::{FULL, Level};
 
 /// Red, green and blue of a stored texel, 0 to 1.
 pub(crate) fn color(level: &Level, [x, y]: [i32; 2]) -> [f64; 3] {
-    let [red_green, blue_height, _] = level.packed(x, y);
-    [red_green & 0xffff, red_green >> 16, blue_height & 0xffff].map(|c| f64::from(c) / f64::from(FULL))
+    level.texel(x, y).color.map(|c| f64::from(c) / f64::from(FULL))
 }
 
 /// Height of a stored texel, 0 to 1.
 fn height(level: &Level, [x, y]: [i32; 2]) -> f64 {
-    f64::from(level.packed(x, y)[1] >> 16) / f64::from(FULL)
+    f64::from(level.rows(false).packed(x, y)[1] >> 16) / f64::from(FULL)
 }
 
 /// `exp(-x)` for x of 0 to 4, by its series, to the last bits.

@@ -1,7 +1,7 @@
 //! A pixel by many rays, each marched densely.
 
 use super::{color, exp_negative, height};
-use crate::filter::Footprint;
+use crate::footprint::Footprint;
 use crate::texture::{Level, Surface};
 
 /// A view ray: from a base place along the displacement down to the deepest relief, both in texels of the base level.
@@ -17,7 +17,7 @@ impl Ray {
     /// From places in texture repeats.
     #[must_use]
     pub fn new(surface: &Surface, base: [f32; 2], displacement: [f32; 2]) -> Self {
-        let texels = surface.texels_per_repeat(0);
+        let texels = surface.base().texels_per_repeat();
         let scaled = |p: [f32; 2]| [0, 1].map(|i| f64::from(p[i]) * f64::from(texels[i]));
         Self { base: scaled(base), displacement: scaled(displacement) }
     }
@@ -55,9 +55,9 @@ pub fn first_hit(level: &Level, ray: &Ray, steps: f64) -> f64 {
 /// The colour of a pixel by `2 side x 2 side` rays over the square around the disc of radius one pixel, each weighted with
 /// the kernel `exp(-2 r^2)`. The slope is the same for all; marches take two steps a texel, then halve.
 #[must_use]
-pub fn supersampled(surface: &Surface, footprint: &Footprint, displacement: [f32; 2], side: i32) -> [f64; 3] {
-    let level = &surface.levels[0];
-    let middle = Ray::new(surface, footprint.center, displacement);
+pub fn supersampled(surface: &Surface, footprint: &Footprint, side: i32) -> [f64; 3] {
+    let level = surface.base();
+    let middle = Ray::new(surface, footprint.base, footprint.displacement);
     let [dx, dy] = [footprint.dx, footprint.dy].map(|d| Ray::new(surface, d, d).base);
     let (mut sums, mut weights) = ([0.0; 3], 0.0);
     for (i, j) in (-side..side).flat_map(|j| (-side..side).map(move |i| (i, j))) {

@@ -5,20 +5,22 @@
 //! and stores the greatest height in them: a ray above it passes the node without a hit. (Maximum mipmaps: Tevs,
 //! Ihrke, Seidel 2008.)
 
-use crate::texture::{FULL_F32, Level, Surface, Wrap};
+use crate::texture::{FULL_F32, Rows, Surface, Wrap};
 
 /// Heights of a surface's base level, read where the surface has them, with maxima.
 #[derive(Clone, Debug)]
 pub struct HeightField {
     /// Texels along u and v before the pattern wraps.
     pub size: [i32; 2],
+    /// Depth of the deepest relief in texture repeats.
+    pub relief_depth: f32,
     /// Texels per texture repeat along u and v.
     pub texels_per_repeat: [f32; 2],
     /// One over `size`.
     pub inverse_size: [f32; 2],
     /// Whether the pattern ends at its edges instead of repeating.
     pub is_clamped: bool,
-    base: Level,
+    base: Rows,
     nodes: Vec<NodeLevel>,
 }
 
@@ -30,16 +32,16 @@ struct NodeLevel {
 
 impl HeightField {
     /// The heights of a surface.
-    #[must_use]
     pub fn new(surface: &Surface) -> Self {
-        let base = &surface.levels[0];
-        let (w, h) = (base.width, base.height);
+        let base = surface.base();
+        let [w, h] = base.size();
         let mut field = Self {
             size: [w as i32, h as i32],
             inverse_size: [1.0 / w as f32, 1.0 / h as f32],
-            texels_per_repeat: surface.texels_per_repeat(0),
-            is_clamped: surface.wrap == Wrap::Clamp,
-            base: base.clone(),
+            relief_depth: surface.relief_depth(),
+            texels_per_repeat: base.texels_per_repeat(),
+            is_clamped: surface.wrap() == Wrap::Clamp,
+            base: base.rows(false).clone(),
             nodes: Vec::new(),
         };
         field.nodes = field.build_nodes();
@@ -47,13 +49,11 @@ impl HeightField {
     }
 
     /// Levels of nodes, the first of one cell a node (not stored), the last of one node.
-    #[must_use]
     pub fn num_levels(&self) -> i32 {
         self.nodes.len() as i32 + 1
     }
 
     /// The level that a ray of that many texels begins on: a node holds about a fourth of its way.
-    #[must_use]
     pub fn first_level(&self, length: f32) -> i32 {
         let exponent = (length.max(1.0).to_bits() >> 23) as i32 - 127;
         (exponent - 2).clamp(0, self.num_levels() - 1)
@@ -61,13 +61,11 @@ impl HeightField {
 
     /// The place of a cell in the stored pattern. Cells beyond the edges of a clamped pattern, where the relief is
     /// level across the edge, are -1 and the last.
-    #[must_use]
     pub fn fold(&self, axis: usize, i: i32) -> i32 {
         if self.is_clamped { i.clamp(-1, self.size[axis] - 1) } else { i.rem_euclid(self.size[axis]) }
     }
 
     /// The heights, 0 to [`FULL`](crate::texture::FULL), at the corners of a folded cell: (0,0), (1,0), (0,1), (1,1).
-    #[must_use]
     pub fn corners(&self, x: i32, y: i32) -> [f32; 4] {
         let above = match y + 1 == self.size[1] {
             true if self.is_clamped => y,
@@ -79,14 +77,12 @@ impl HeightField {
     }
 
     /// The greatest height, 0 to [`FULL`](crate::texture::FULL), in the node of level 1 or more that holds a folded cell.
-    #[must_use]
     pub fn node_max(&self, level: i32, x: i32, y: i32) -> f32 {
         let nodes = &self.nodes[level as usize - 1];
         f32::from(nodes.maxima[(y.max(0) >> level) as usize * nodes.width + (x.max(0) >> level) as usize])
     }
 
     /// The bilinear height, 0 to 1, at a place in texels (texel centres lie at halves).
-    #[must_use]
     pub fn height_at(&self, u: f64, v: f64) -> f64 {
         let (x, y) = ((u - 0.5).floor(), (v - 0.5).floor());
         let (fx, fy) = (u - 0.5 - x, v - 0.5 - y);

@@ -6,10 +6,14 @@
 //! `s = (alpha, beta) / gamma` and the relief depth `S`; and the *hit* `q = b + t D` with the depth `t`, 0 to 1, at which
 //! the ray from the base coordinate `b` first meets the relief. Lanes are pixels.
 
+pub mod directions;
 mod height_field;
+mod level_loss;
 mod march;
+pub mod seen;
 
 pub use height_field::HeightField;
+pub use level_loss::LevelLoss;
 pub use march::march;
 
 use crate::simd::PixelLanes;
@@ -21,7 +25,6 @@ pub const MAX_SLOPE: f32 = 64.0;
 /// How far the view ray moves along the texture, in repeats, down to the deepest relief.
 ///
 /// A surface seen from behind shows its relief just as deep on its other side.
-#[must_use]
 pub fn displacement(view: &[PixelLanes; 3], relief_depth: f32) -> [PixelLanes; 2] {
     let [alpha, beta, gamma] = *view;
     let along = (alpha * alpha + beta * beta).sqrt();
@@ -32,7 +35,6 @@ pub fn displacement(view: &[PixelLanes; 3], relief_depth: f32) -> [PixelLanes; 2
 }
 
 /// The lanes, with 0 in place of what is not a finite number.
-#[must_use]
 pub fn finite(lanes: PixelLanes) -> PixelLanes {
     lanes.is_finite().select(lanes, PixelLanes::ZERO)
 }

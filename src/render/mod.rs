@@ -2,24 +2,22 @@
 //!
 //! 1. `geometry` projects, clips and snaps the triangles.
 //! 2. `raster` finds the visible triangle of every sample, tile by tile, and gathers the quads that each covers.
-//! 3. For each pair of quads ([`quads`]): `relief` gives the view slope and the hits, `filter` the footprint and its texels,
-//!    `shade` the colour.
+//! 3. For each block of quads (`shade`): `relief` finds the hits, `footprint` says where the pixels lie in the texture,
+//!    `filter` finds their texels, `light` shades them.
 //! 4. `raster` adds the colours up to pixels.
 
-mod flat;
-mod patches;
-mod quads;
-mod queue;
-mod tables;
+mod prepared;
+mod shade;
+
+pub(crate) use prepared::PreparedScene;
+pub(crate) use shade::{ShadeScratch, Shader};
 
 use crate::error::Result;
 use crate::frame::{Frame, Pixel};
 use crate::geometry::Geometry;
-use crate::raster::{QuadBlock, Rasterizer, TileGrid};
+use crate::raster::{Pool, QuadBlock, Rasterizer, TileGrid};
 use crate::scene::{Camera, Scene};
 use crate::settings::{Region, Settings};
-use quads::QuadShader;
-use tables::Tables;
 
 /// What drawing a frame took, in milliseconds: of the whole frame for `geometry_ms`, `raster_ms` and `binning_ms`, of all
 /// threads together for the others.
@@ -56,7 +54,8 @@ pub struct Stats {
 pub struct Renderer {
     scene: Scene,
     settings: Settings,
-    tables: Tables,
+    prepared: PreparedScene,
+    pool: Pool<ShadeScratch>,
     geometry: Geometry,
     rasterizer: Rasterizer,
 }
@@ -68,11 +67,11 @@ impl Renderer {
     /// Names the first setting or part of the scene that is not valid.
     pub fn new(scene: Scene, settings: Settings) -> Result<Self> {
         scene.validate()?;
-        let tables = Tables::new(&scene);
         let mut renderer = Self {
+            prepared: PreparedScene::new(&scene),
             scene,
             settings: Settings::default(),
-            tables,
+            pool: Pool::default(),
             geometry: Geometry::default(),
             rasterizer: Rasterizer::default(),
         };
@@ -86,7 +85,7 @@ impl Renderer {
     /// Names the first setting that is out of its range.
     pub fn set_settings(&mut self, settings: Settings) -> Result<()> {
         settings.validate()?;
-        self.tables.update(&self.scene, &settings);
+        self.prepared.make_ready(&settings);
         self.settings = settings;
         Ok(())
     }
@@ -111,13 +110,11 @@ impl Renderer {
     }
 
     /// What is drawn.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
     /// How it is drawn.
-    #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -125,18 +122,26 @@ impl Renderer {
     /// Draws a frame on the threads of the current rayon pool.
     pub fn render(&mut self) -> Frame {
         let mut frame = Frame::default();
-        self.render_into(&mut frame, &|| 0.0);
+        self.render_into(&mut frame);
         frame
     }
 
-    /// Draws over a frame, whose memory is taken again where its size is right, and says what it took; `clock` gives
-    /// milliseconds, since the library reads no clock of its own.
-    pub fn render_into<P: Pixel>(&mut self, frame: &mut Frame<P>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
-        let Self { scene, settings, tables, geometry, rasterizer } = self;
+    /// Draws over a frame, whose memory is taken again where its size is right.
+    pub fn render_into<P: DrawnPixel>(&mut self, frame: &mut Frame<P>) {
+        self.render_timed(frame, &|| 0.0);
+    }
+
+    /// [`Self::render_into`], and what it took; `clock` gives milliseconds, since the library reads no clock of its own.
+    pub fn render_timed<P: DrawnPixel>(&mut self, frame: &mut Frame<P>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
+        P::draw(self, frame, clock)
+    }
+
+    fn draw<P: Pixel>(&mut self, frame: &mut Frame<P>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
+        let Self { scene, settings, prepared, pool, geometry, rasterizer } = self;
         let start = clock();
         geometry.project(scene, settings);
         let projected = clock();
-        let shader = QuadShader::new(scene, settings, tables);
+        let shader = Shader::new(scene, settings, prepared, pool);
         let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
         let counts = rasterizer.draw(geometry, (scene, settings), &shade, clock, frame);
         if let Some(region) = settings.region {
@@ -144,7 +149,7 @@ impl Renderer {
             let [x, y] = TileGrid::new(settings).area.min.map(|v| v as u32);
             frame.crop(Region { x: region.x - x, y: region.y - y, ..region });
         }
-        let [texels_tested, texels_visible] = shader.num_texels();
+        let work = shader.work();
         Stats {
             geometry_ms: projected - start,
             raster_ms: (clock() - projected - counts.shade_ms / rayon::current_num_threads() as f64).max(0.0),
@@ -156,9 +161,28 @@ impl Renderer {
             quads_shaded: counts.quads_shaded,
             triangles_in: scene.meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum(),
             triangles_drawn: counts.triangles_drawn,
-            texels_tested,
-            texels_visible,
+            texels_tested: work.num_tested,
+            texels_visible: work.num_averaged,
         }
+    }
+}
+
+/// A [`Pixel`] that frames are drawn in. Each kind of pixel has its drawing compiled once, here, and not in every crate that
+/// draws.
+pub trait DrawnPixel: Pixel {
+    #[doc(hidden)]
+    fn draw(renderer: &mut Renderer, frame: &mut Frame<Self>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats;
+}
+
+impl DrawnPixel for [f32; 4] {
+    fn draw(renderer: &mut Renderer, frame: &mut Frame<Self>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
+        renderer.draw(frame, clock)
+    }
+}
+
+impl DrawnPixel for [u8; 4] {
+    fn draw(renderer: &mut Renderer, frame: &mut Frame<Self>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
+        renderer.draw(frame, clock)
     }
 }
 

@@ -1,14 +1,10 @@
-//! One level of a pyramid: packed texels in an order made for row sweeps.
+//! One level of a pyramid: packed texels, once with rows along u and once with rows along v.
 //!
 //! A texel is two words, `red | green << 16` and `blue | height << 16`, each 0 to [`FULL`] in linear light or height, and,
-//! where normals are kept, a third word (see [`pack_normal`]). A row stores its words plane by plane, with an apron of
-//! [`APRON`] texels beyond its end and, where the pattern does not repeat, before its beginning, so that any run of that
-//! many neighbouring texels is one contiguous load per plane.
+//! where normals are kept, a third word (see [`pack_normal`]).
 
-use super::Wrap;
-use crate::simd::{u32x8, u32x16};
-use rayon::prelude::*;
-use std::sync::Arc;
+use super::rows::Rows;
+use crate::simd::{TexelLanes, as_signed, u32x8};
 
 /// What a packed colour's `color_scale`, or a height on the polygon, is stored as. Fifteen of the sixteen bits: then the
 /// difference of two texels is a signed 16-bit number, and lanes interpolate two channels of a texel at once.
@@ -17,218 +13,88 @@ pub const FULL: u32 = 32767;
 /// [`FULL`] as a number.
 pub(crate) const FULL_F32: f32 = FULL as f32;
 
-/// Texels that a row repeats beyond its ends: the widest run of lanes that is loaded at once.
-pub(crate) const APRON: usize = 32;
-
-/// One texel as it is packed.
-pub(crate) type PackedTexel = [u32; 3];
-
-/// One level of a [`Surface`](super::Surface)'s pyramid.
-#[derive(Clone, Debug)]
-pub struct Level {
-    /// Texels a row before the pattern wraps.
-    pub width: usize,
-    /// Rows before the pattern wraps.
-    pub height: usize,
-    wrap: Wrap,
-    num_planes: usize,
-    /// Shared, so that height fields read the heights where they are.
-    words: Arc<[u32]>,
+/// One texel, or the mean of several, in the units that a [`Surface`](super::Surface) stores.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Texel {
+    /// Linear RGB: [`FULL`] stands for the surface's colour scale.
+    pub color: [f32; 3],
+    /// Normal in the frame of the texture: x along u, y along v, z off the surface; a mean is shorter than one where
+    /// normals differ.
+    pub normal: [f32; 3],
 }
 
-/// Rows that are transposed at once: as many as a cache line of the source has words.
-const BLOCK: usize = 16;
+impl Texel {
+    /// The normal of a surface without relief.
+    pub const UP: [f32; 3] = [0.0, 0.0, 1.0];
+
+    /// This where `t` is 0, the other where it is 1.
+    pub fn lerp(&self, other: &Self, t: f32) -> Self {
+        let mix = |a: [f32; 3], b: [f32; 3]| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t);
+        Self { color: mix(self.color, other.color), normal: mix(self.normal, other.normal) }
+    }
+}
+
+/// One level of a [`Surface`](super::Surface)'s pyramid. Columns and rows are those of the endless pattern: any number
+/// stands for a texel, by the surface's [`Wrap`](super::Wrap).
+#[derive(Clone, Debug)]
+pub struct Level {
+    texels_per_repeat: [f32; 2],
+    /// Rows along u, and the same texels with rows along v.
+    rows: [Rows; 2],
+}
 
 impl Level {
-    /// A level from its texels, row by row.
-    pub(super) fn new(width: usize, height: usize, wrap: Wrap, num_planes: usize, texels: &[PackedTexel]) -> Self {
-        Self::filled([width, height], wrap, num_planes, 1, |y, plane, lines| {
-            let texels = &texels[y * width..][..width];
-            lines[0].iter_mut().zip(texels).for_each(|(word, texel)| *word = texel[plane]);
-        })
+    /// A level from its rows along u, of a pattern that spans so many repeats of the texture.
+    pub(super) fn new(rows: Rows, num_repeats: u32) -> Self {
+        let share = 1.0 / num_repeats as f32;
+        let texels_per_repeat = [rows.width(), rows.height()].map(|n| n as f32 * share);
+        let turned = rows.turned();
+        Self { texels_per_repeat, rows: [rows, turned] }
     }
 
-    /// The same texels with rows that run along columns.
-    pub(super) fn transposed(&self) -> Self {
-        Self::filled([self.height, self.width], self.wrap, self.num_planes, BLOCK, |x, plane, columns| {
-            let (first, stride) = (self.lead() + plane * self.stride() + x, self.stride() * self.num_planes);
-            for y in 0..self.height {
-                let words = &self.words[first + y * stride..];
-                columns.iter_mut().zip(words).for_each(|(column, word)| column[y] = *word);
-            }
-        })
+    /// Texels that are stored along u and along v before the pattern wraps: two repeats of a mirrored texture, else one.
+    pub fn size(&self) -> [usize; 2] {
+        [self.rows[0].width(), self.rows[0].height()]
     }
 
-    /// A level whose rows are written by `fill(y, plane, rows)`, up to `at_once` from row y on.
-    fn filled(
-        [width, height]: [usize; 2],
-        wrap: Wrap,
-        num_planes: usize,
-        at_once: usize,
-        fill: impl Fn(usize, usize, &mut [&mut [u32]]) + Sync,
-    ) -> Self {
-        let mut level = Self { width, height, wrap, num_planes, words: Arc::new([]) };
-        let (lead, stride) = (level.lead(), level.stride());
-        let mut words: Arc<[u32]> = std::iter::repeat_n(0, stride * num_planes * height).collect();
-        let rows = Arc::get_mut(&mut words).expect("nobody shares it yet");
-        let apron: Vec<_> = (0..lead).chain(lead + width..stride).collect();
-        let apron = apron.into_iter().map(|i| (i, lead + wrap_index(wrap, i as i32 - lead as i32, width)));
-        let apron: Vec<(usize, usize)> = apron.collect();
-        rows.par_chunks_mut(stride * num_planes * at_once).enumerate().for_each(|(block, rows)| {
-            for plane in 0..num_planes {
-                let of_plane = rows.chunks_exact_mut(stride).skip(plane).step_by(num_planes);
-                let mut lines: Vec<&mut [u32]> = of_plane.map(|row| &mut row[lead..lead + width]).collect();
-                fill(block * at_once, plane, &mut lines);
-            }
-            rows.chunks_exact_mut(stride).for_each(|row| apron.iter().for_each(|&(to, from)| row[to] = row[from]));
-        });
-        level.words = words;
-        level
-    }
-
-    /// Whether the level holds the texels that its size, which anyone may have changed, promises.
-    pub(super) fn is_whole(&self, wrap: Wrap, has_normals: bool) -> bool {
-        let has_size = [self.width, self.height].iter().all(|n| (1..=65536).contains(n));
-        let num_words = has_size.then(|| self.stride() * self.num_planes * self.height);
-        self.wrap == wrap && self.has_normals() == has_normals && num_words == Some(self.words.len())
-    }
-
-    /// The packed texel at a column and row of the endless pattern.
-    pub(crate) fn packed(&self, x: i32, y: i32) -> PackedTexel {
-        let x = wrap_index(self.wrap, x, self.width) + self.lead();
-        let row = self.row(y);
-        let stride = self.stride();
-        std::array::from_fn(|plane| if plane < self.num_planes { row[plane * stride + x] } else { 0 })
-    }
-
-    /// The words of a row of the endless pattern, all planes.
+    /// Texels per texture repeat along u and v.
     #[inline(always)]
-    pub(crate) fn row(&self, y: i32) -> &[u32] {
-        let start = self.row_start(y);
-        &self.words[start..start + self.pitch()]
+    pub fn texels_per_repeat(&self) -> [f32; 2] {
+        self.texels_per_repeat
     }
 
-    /// Where a run of up to [`APRON`] texels that begins at column `x` of the endless pattern starts within a plane.
+    /// The texels row by row: along u, or along v where they are wanted turned.
     #[inline(always)]
-    pub(crate) fn run_start(&self, x: i32) -> usize {
-        match self.wrap {
-            Wrap::Clamp => (x.clamp(-(APRON as i32), self.width as i32) + APRON as i32) as usize,
-            Wrap::Repeat | Wrap::Mirror => wrap_index(self.wrap, x, self.width),
-        }
+    pub(crate) fn rows(&self, is_turned: bool) -> &Rows {
+        &self.rows[usize::from(is_turned)]
     }
 
-    /// Words of a row, all planes.
+    /// A place in repeats as one in texels, whose centres lie at halves.
     #[inline(always)]
-    pub(crate) fn pitch(&self) -> usize {
-        self.stride() * self.num_planes
+    pub(crate) fn in_texels(&self, place: [f32; 2]) -> [f32; 2] {
+        [place[0] * self.texels_per_repeat[0], place[1] * self.texels_per_repeat[1]]
     }
 
-    /// Where the rows of the endless pattern from `first` on start among all words.
-    #[inline(always)]
-    pub(crate) fn row_starts(&self, first: i32) -> RowStarts<'_> {
-        RowStarts { level: self, row: first, start: self.row_start(first), pitch: self.pitch() }
-    }
-
-    /// Where a row of the endless pattern starts among all words.
-    #[inline(always)]
-    pub(crate) fn row_start(&self, y: i32) -> usize {
-        wrap_index(self.wrap, y, self.height) * self.pitch()
-    }
-
-    /// Where the run of up to [`APRON`] texels that begins at a column and row of the endless pattern starts among all words.
-    #[inline(always)]
-    pub(crate) fn start_at(&self, x: i32, y: i32) -> usize {
-        self.row_start(y) + self.run_start(x)
-    }
-
-    /// All words; see [`Self::start_at`].
-    #[inline(always)]
-    pub(crate) fn words(&self) -> &[u32] {
-        &self.words
-    }
-
-    /// Texels of the apron before a row: a run never begins there where the pattern repeats.
-    fn lead(&self) -> usize {
-        if self.wrap == Wrap::Clamp { APRON } else { 0 }
-    }
-
-    /// Distance in words between the planes of a row.
-    pub(crate) fn stride(&self) -> usize {
-        self.lead() + self.width + APRON
-    }
-
-    /// Eight neighbouring words of a row, from `start`: [`Self::run_start`] plus a multiple of [`Self::stride`].
-    #[inline(always)]
-    pub(crate) fn run(row: &[u32], start: usize) -> u32x8 {
-        let lanes: &[u32; 8] = row[start..start + 8].try_into().expect("a slice of eight");
-        u32x8::new(*lanes)
-    }
-
-    /// [`Self::run`] of sixteen.
-    #[inline(always)]
-    pub(crate) fn long_run(words: &[u32], start: usize) -> u32x16 {
-        let lanes: &[u32; 16] = words[start..start + 16].try_into().expect("a slice of sixteen");
-        u32x16::new(*lanes)
-    }
-
-    /// Whether texels have a third word, their normal.
+    /// Whether texels have a normal of their own.
     pub(crate) fn has_normals(&self) -> bool {
-        self.num_planes == 3
+        self.rows[0].has_normals()
     }
 
-    /// The height, 0 to 1, at a column and row of the endless pattern.
-    #[must_use]
+    /// The texel at a column and row; without normals of its own a surface is flat.
+    pub fn texel(&self, x: i32, y: i32) -> Texel {
+        let [red_green, blue_height, normal] = self.rows[0].packed(x, y);
+        let color = [red_green & 0xffff, red_green >> 16, blue_height & 0xffff].map(|c| c as f32);
+        Texel { color, normal: if self.has_normals() { unpack_normal(normal) } else { Texel::UP } }
+    }
+
+    /// The height, 0 to 1, at a column and row; 1 lies on the polygon.
     pub fn height_at(&self, x: i32, y: i32) -> f32 {
-        (self.packed(x, y)[1] >> 16) as f32 * (1.0 / FULL_F32)
-    }
-
-    /// The heights, 0 to [`FULL`], at a stored row's column and the one after it; columns of a clamped pattern begin at -1.
-    #[inline(always)]
-    pub(crate) fn two_heights(&self, x: i32, y: i32) -> [u32; 2] {
-        let stride = self.stride();
-        let at = (y as usize * self.num_planes + 1) * stride + (self.lead() as i32 + x) as usize;
-        [self.words[at] >> 16, self.words[at + 1] >> 16]
+        (self.rows[0].packed(x, y)[1] >> 16) as f32 * (1.0 / FULL_F32)
     }
 
     /// Bytes that the level takes.
     pub(crate) fn num_bytes(&self) -> usize {
-        self.words.len() * 4
-    }
-}
-
-/// See [`Level::row_starts`].
-pub(crate) struct RowStarts<'a> {
-    level: &'a Level,
-    row: i32,
-    start: usize,
-    pitch: usize,
-}
-
-impl RowStarts<'_> {
-    /// Where the next row starts.
-    #[inline(always)]
-    pub(crate) fn next(&mut self) -> usize {
-        let start = self.start;
-        self.row = self.row.wrapping_add(1);
-        self.start = match self.level.wrap {
-            Wrap::Clamp => self.level.row_start(self.row),
-            // Begins again after the last one.
-            Wrap::Repeat | Wrap::Mirror if start + self.pitch == self.level.words.len() => 0,
-            Wrap::Repeat | Wrap::Mirror => start + self.pitch,
-        };
-        start
-    }
-}
-
-/// The stored index of place `i` of an endless row of period `n`. A mirrored pattern is stored whole, so it repeats.
-#[inline(always)]
-pub(crate) fn wrap_index(wrap: Wrap, i: i32, n: usize) -> usize {
-    let n = n as i32;
-    match wrap {
-        Wrap::Clamp => i.clamp(0, n - 1) as usize,
-        // A power of two, the usual size, needs no division.
-        Wrap::Repeat | Wrap::Mirror if n & (n - 1) == 0 => (i & (n - 1)) as usize,
-        Wrap::Repeat | Wrap::Mirror => i.rem_euclid(n) as usize,
+        self.rows.iter().map(Rows::num_bytes).sum()
     }
 }
 
@@ -242,4 +108,11 @@ pub(crate) fn pack_normal(n: [f32; 3]) -> u32 {
 pub(crate) fn unpack_normal(word: u32) -> [f32; 3] {
     let signed = |bits: u32, half: f32| (bits as f32 - half) / half;
     [signed(word & 2047, 1023.0), signed(word >> 11 & 2047, 1023.0), signed(word >> 22, 511.0)]
+}
+
+/// [`unpack_normal`] of eight words.
+pub(crate) fn unpack_normals(words: u32x8) -> [TexelLanes; 3] {
+    let number = |bits: u32x8| TexelLanes::from_i32x8(as_signed(bits));
+    let [x, y, z] = [words & u32x8::splat(2047), words >> 11_u32 & u32x8::splat(2047), words >> 22_u32].map(number);
+    [x * (1.0 / 1023.0) - 1.0, y * (1.0 / 1023.0) - 1.0, z * (1.0 / 511.0) - 1.0]
 }

@@ -8,12 +8,14 @@ mod image;
 mod level;
 mod pyramid;
 mod resample;
+mod rows;
 mod surface;
 
 pub(crate) use color::srgb8_of_four;
 pub use color::{linear_from_srgb, linear_from_srgb8, srgb_from_linear, srgb8_from_linear};
 pub use image::{ColorImage, HeightImage, NormalImage};
-pub(crate) use level::{APRON, FULL_F32, RowStarts, unpack_normal, wrap_index};
-pub use level::{FULL, Level};
+pub(crate) use level::{FULL_F32, unpack_normals};
+pub use level::{FULL, Level, Texel};
 pub(crate) use pyramid::box_taps;
+pub(crate) use rows::{APRON, RowStarts, Rows, wrap_index};
 pub use surface::{Surface, SurfaceMaps, Wrap};

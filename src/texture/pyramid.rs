@@ -4,28 +4,28 @@
 //! before, with fractional weights where the size is odd, so any size works and a repeating pattern still repeats.
 
 use super::Wrap;
-use super::level::{FULL, FULL_F32, Level, PackedTexel, pack_normal, unpack_normal, wrap_index};
+use super::level::{FULL, FULL_F32, Level, pack_normal, unpack_normal};
+use super::rows::{PackedTexel, Rows, wrap_index};
 use rayon::prelude::*;
 
-/// All levels, and all levels transposed.
+/// All levels, the finest first, of a pattern as it is stored: a mirrored one spans two repeats.
 pub(super) fn build(
     texels: Vec<PackedTexel>,
     size: [usize; 2],
     wrap: Wrap,
     num_planes: usize,
-) -> (Vec<Level>, Vec<Level>) {
-    let (mut levels, mut transposed) = (Vec::new(), Vec::new());
+) -> Vec<Level> {
+    let mut levels = Vec::new();
     let (mut texels, mut size) = (texels, size);
     loop {
         let [width, height] = size;
-        let level = Level::new(width, height, wrap, num_planes, &texels);
+        let rows = Rows::new(width, height, wrap, num_planes, &texels);
         let smaller = size.map(|n| (n / 2).max(1));
-        // The finer texels go before the transposed copy comes.
+        // The finer texels go before their turned copy comes.
         texels = if size == [1, 1] { Vec::new() } else { halve(&texels, size, smaller) };
-        transposed.push(level.transposed());
-        levels.push(level);
+        levels.push(Level::new(rows, if wrap == Wrap::Mirror { 2 } else { 1 }));
         if size == [1, 1] {
-            return (levels, transposed);
+            return levels;
         }
         size = smaller;
     }

@@ -1,6 +1,6 @@
 //! Brings maps of different sizes to one: bilinear between texel centres, the identity where the size is the same.
 
-use super::level::{PackedTexel, wrap_index};
+use super::rows::{PackedTexel, wrap_index};
 use super::{ColorImage, HeightImage, NormalImage, Wrap};
 use rayon::prelude::*;
 

@@ -1,6 +1,7 @@
-//! The texels of a material: colour, height and normals of one size, packed, with every mip level and a transposed copy.
+//! The texels of a material: colour, height and normals of one size, packed, with every mip level.
 
-use super::level::{FULL, Level, PackedTexel, pack_normal};
+use super::level::{FULL, Level, pack_normal};
+use super::rows::PackedTexel;
 use super::{ColorImage, HeightImage, NormalImage, pyramid, resample};
 use crate::error::{Error, Result};
 
@@ -39,23 +40,13 @@ impl Default for SurfaceMaps {
     }
 }
 
-/// The texels of a material: packed, with every mip level, each also transposed.
+/// The texels of a material: packed, with every mip level.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// Mip levels, the finest first; rows run along u.
-    pub levels: Vec<Level>,
-    /// The same levels with rows that run along v.
-    pub transposed: Vec<Level>,
-    /// What lies beyond the edges.
-    pub wrap: Wrap,
-    /// Depth of the deepest relief below the polygon in texture repeats; 0 where the surface is flat.
-    pub relief_depth: f32,
-    /// The brightest colour that a texel can hold; stored as [`FULL`](super::FULL).
-    pub color_scale: f32,
-    /// Whether the third word of a texel holds a normal.
-    pub has_normals: bool,
-    /// How many repeats of the texture the stored pattern spans: 2 where it is mirrored, else 1.
-    pub repeats_stored: u32,
+    levels: Vec<Level>,
+    wrap: Wrap,
+    relief_depth: f32,
+    color_scale: f32,
 }
 
 impl Surface {
@@ -92,56 +83,60 @@ impl Surface {
         let (texels, size) =
             if is_mirrored { pyramid::mirrored(texels, width, height) } else { (texels, [width, height]) };
         let num_planes = if has_normals { 3 } else { 2 };
-        let (levels, transposed) = pyramid::build(texels, size, wrap, num_planes);
         Ok(Self {
-            levels,
-            transposed,
+            levels: pyramid::build(texels, size, wrap, num_planes),
             wrap,
             relief_depth: if is_flat { 0.0 } else { relief_depth },
             color_scale,
-            has_normals,
-            repeats_stored: if is_mirrored { 2 } else { 1 },
         })
     }
 
-    /// Checks that the fields fit together, which those of [`Surface::new`] do.
-    pub(crate) fn validate(&self) -> std::result::Result<(), String> {
-        let is_mirrored = self.wrap == Wrap::Mirror;
-        let pairs = || self.levels.iter().zip(&self.transposed);
-        let fits = |level: &Level, turned: &Level| {
-            level.is_whole(self.wrap, self.has_normals)
-                && turned.is_whole(self.wrap, self.has_normals)
-                && [level.width, level.height] == [turned.height, turned.width]
-        };
-        let shrinks = self.levels.windows(2).all(|pair| {
-            [[pair[0].width, pair[1].width], [pair[0].height, pair[1].height]].iter().all(|[n, half]| half <= n)
-        });
-        if self.levels.is_empty()
-            || self.levels.len() != self.transposed.len()
-            || self.repeats_stored != 1 + u32::from(is_mirrored)
-            || !shrinks
-            || !pairs().all(|(level, turned)| fits(level, turned))
-        {
-            return Err("the levels of its surface do not fit together; Surface::new makes them".into());
-        }
-        if !((0.0..=1.0).contains(&self.relief_depth) && self.color_scale > 0.0 && self.color_scale <= 1e6) {
-            return Err("its surface's relief depth must be within 0 to 1, its colour scale above 0, up to 1e6".into());
-        }
-        Ok(())
+    /// Mip levels, the finest first; the last holds one texel.
+    #[inline(always)]
+    pub fn levels(&self) -> &[Level] {
+        &self.levels
     }
 
-    /// Texels per texture repeat of a level, along u and v.
-    #[must_use]
-    pub fn texels_per_repeat(&self, level: usize) -> [f32; 2] {
-        let level = &self.levels[level];
-        let share = if self.repeats_stored == 2 { 0.5 } else { 1.0 };
-        [level.width as i32 as f32 * share, level.height as i32 as f32 * share]
+    /// The finest level.
+    #[inline(always)]
+    pub fn base(&self) -> &Level {
+        &self.levels[0]
+    }
+
+    /// The number of the coarsest level.
+    #[inline(always)]
+    pub(crate) fn last_level(&self) -> usize {
+        self.levels.len() - 1
+    }
+
+    /// What lies beyond the edges.
+    pub fn wrap(&self) -> Wrap {
+        self.wrap
+    }
+
+    /// Depth of the deepest relief below the polygon in texture repeats, 0 to 1; 0 where the surface is flat.
+    pub fn relief_depth(&self) -> f32 {
+        self.relief_depth
+    }
+
+    /// Mean depth of the relief, 0 to 1 of [`Self::relief_depth`].
+    pub(crate) fn mean_depth(&self) -> f32 {
+        1.0 - self.levels[self.last_level()].height_at(0, 0)
+    }
+
+    /// The brightest colour that a texel can hold; stored as [`FULL`].
+    pub fn color_scale(&self) -> f32 {
+        self.color_scale
+    }
+
+    /// Whether texels have normals of their own; without, the surface is flat to light.
+    pub fn has_normals(&self) -> bool {
+        self.levels[0].has_normals()
     }
 
     /// Bytes that the texels take.
-    #[must_use]
     pub fn num_bytes(&self) -> usize {
-        self.levels.iter().chain(&self.transposed).map(Level::num_bytes).sum()
+        self.levels.iter().map(Level::num_bytes).sum()
     }
 }
 

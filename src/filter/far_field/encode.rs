@@ -1,6 +1,7 @@
 //! One table: the image seen in one direction, with its coarser levels, in one word a texel.
 
 use crate::simd::{TexelLanes, as_signed, u32x8};
+use crate::texture::box_taps;
 
 /// Texels that a row repeats beyond its end, so that any eight neighbours are one load.
 const APRON: usize = 8;
@@ -20,7 +21,7 @@ struct FarLevel {
 
 impl FarImage {
     /// Words of a level of that size.
-    pub(super) fn num_words(width: usize, height: usize) -> usize {
+    pub(super) fn num_words([width, height]: [usize; 2]) -> usize {
         (width + APRON) * height
     }
 
@@ -39,17 +40,6 @@ impl FarImage {
             }
             (size, colors) = halve(size, &colors);
         }
-    }
-
-    /// The colours of the finest level, 0 to 1 of the surface's scale, row by row.
-    pub(super) fn colors(&self) -> Vec<[f32; 3]> {
-        let FarLevel { width, height, words } = &self.levels[0];
-        let decoded = |word: u32| {
-            let roots = [(word & 2047, 2047.0), (word >> 11 & 2047, 2047.0), (word >> 22, 1023.0)];
-            roots.map(|(root, most)| (root as f32 / most) * (root as f32 / most))
-        };
-        let rows = words.chunks_exact(width + APRON).take(*height);
-        rows.flat_map(|row| row[..*width].iter().map(|&word| decoded(word))).collect()
     }
 
     /// A row of a level of the endless pattern.
@@ -91,7 +81,6 @@ pub(super) const UNITS: [f32; 3] = [1.0 / (2047.0 * 2047.0), 1.0 / (2047.0 * 204
 
 /// Half the size, each texel the mean of the area that it covers.
 fn halve([w, h]: [usize; 2], colors: &[[f32; 3]]) -> ([usize; 2], Vec<[f32; 3]>) {
-    use crate::texture::box_taps;
     let to = [w, h].map(|n| (n / 2).max(1));
     let columns: Vec<_> = (0..to[0]).map(|x| box_taps(x, w, to[0])).collect();
     let mut halved = Vec::with_capacity(to[0] * to[1]);

@@ -1,22 +1,11 @@
 //! A pixel's mean over what the lines of a patch see, under its own Gaussian.
 
-use super::sweep::{Grid, Profile, Row, lane_indices, load};
-use crate::filter::Filtered;
-use crate::shade::LocalLights;
-use crate::simd::{PixelLanes, TexelLanes, exp_negative, sums};
+use super::grid::{Grid, MOST_LINES, Profile, Row, load};
+use super::pixels::PixelOnLines;
+use crate::light::LocalLights;
+use crate::simd::{PixelLanes, TexelLanes, exp_negative, lane_indices, sums};
+use crate::texture::Texel;
 use glam::Vec3;
-
-/// A pixel's ellipse on the lines of a patch; see [`Kernels`](super::frame::Kernels).
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Kernel {
-    pub(super) xi: f32,
-    pub(super) q: f32,
-    pub(super) along: f32,
-    pub(super) skew: f32,
-    pub(super) across: f32,
-    pub(super) half_width: f32,
-    pub(super) half_height: f32,
-}
 
 /// `G(z)`, the integral of `exp(-2 z^2)` from 0, for z within -1 to 1: the integral of the even polynomial of degree 8
 /// that is nearest to the kernel, off by at most 0.0002.
@@ -42,7 +31,7 @@ impl Totals {
         &mut self,
         profile: &Profile<CHANNELS>,
         grid: &Grid,
-        kernel: &Kernel,
+        kernel: &PixelOnLines,
         lights: Option<&LocalLights>,
     ) {
         let inverse = 1.0 / grid.spacing;
@@ -64,11 +53,11 @@ impl Totals {
         &mut self,
         bins: &[[Row; CHANNELS]],
         grid: &Grid,
-        kernel: &Kernel,
+        kernel: &PixelOnLines,
         [line, first_bin]: [usize; 2],
         lights: Option<&LocalLights>,
     ) {
-        assert!(line <= super::sweep::MOST_LINES, "a line of the grid");
+        assert!(line <= MOST_LINES, "a line of the grid");
         let xi = (lane_indices() + line as f32) * grid.spacing + (grid.first - kernel.xi);
         // Lines of the next grid count there.
         let is_here = lane_indices().simd_lt(TexelLanes::splat((grid.num_lines - line) as f32));
@@ -100,16 +89,16 @@ impl Totals {
     }
 
     /// The mean; `None` where no more was added than the rounding of [`integral`]'s differences makes.
-    pub(super) fn mean(&self, is_lit: bool) -> Option<Filtered> {
+    pub(super) fn mean(&self, is_lit: bool) -> Option<Texel> {
         let sums_of = |[x, y, z]: [TexelLanes; 3]| {
             let [weight, x, y, z] = sums([self.weight, x, y, z]);
             (weight, [x, y, z])
         };
         let (weight, color) = sums_of(self.color);
         let mean = |sums: [f32; 3]| sums.map(|sum| sum / weight);
-        let normal = if is_lit { mean(sums_of(self.normal).1) } else { [0.0, 0.0, 1.0] };
+        let normal = if is_lit { mean(sums_of(self.normal).1) } else { Texel::UP };
         // A difference of 0 may be rounded below.
-        (weight > LEAST_WEIGHT).then(|| Filtered { color: mean(color).map(|c| c.max(0.0)), normal })
+        (weight > LEAST_WEIGHT).then(|| Texel { color: mean(color).map(|c| c.max(0.0)), normal })
     }
 }
 

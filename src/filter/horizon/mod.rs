@@ -16,321 +16,152 @@
 //!
 //! Neighbouring pixels see the same texels, so a *patch* of them is swept once (`sweep`): rows across the longer axis of
 //! the displacement, on a transposed copy of the texels where that is u, and sixteen lines as lanes. What a line sees is
-//! kept bin by bin, and each pixel weighs the bins by its own Gaussian (`kernel`). Where a patch lies and how its
-//! lines run says `frame`; pixels that no patch can hold well are split into smaller ones, at last into single pixels.
+//! kept bin by bin (`walk`), and each pixel weighs the bins by its own Gaussian (`kernel`). `patch` plans which pixels are
+//! swept together, `sweep_frame` how their lines run. What is far comes from tables (`far_field`).
 
-mod frame;
+mod grid;
 mod kernel;
+mod patch;
 mod pixels;
 mod sweep;
+mod sweep_frame;
 mod walk;
 
-pub use pixels::PixelFootprints;
-
-use super::{FarField, Filtered, Footprint, isotropic};
-use crate::settings::Settings;
-use crate::shade::LocalLights;
+use super::batch::{Batch, Filtered, LevelChoice, Work};
+use super::far_field::FarField;
+use super::prepared::Prepared;
+use crate::footprint::Footprints;
+use crate::settings::Horizon;
 use crate::simd::PixelLanes;
-use crate::texture::Surface;
-use frame::{Frame, means};
-use kernel::{Kernel, Totals};
-use pixels::Conics;
-use sweep::{Grid, MOST_LINES, Profile};
+use crate::texture::Texel;
+use patch::{MOST_PIXELS, PatchScratch, Patches};
 
-/// Most rows of a pixel's sweep; a longer one takes a coarser level. Bounds the time of a pixel for any input.
-pub const MAX_ROWS: f32 = 1024.0;
+/// Vectors of pixels that may share a sweep.
+const NUM_VECTORS: usize = MOST_PIXELS / 8;
 
-/// Most pixels of a patch.
-pub const MOST_PIXELS: usize = 256;
+/// Bins along an ellipse for a kernel that is exact to 1e-4.
+const FINE_BINS: f32 = 256.0;
 
-/// Lines across the widest ellipse of a patch for each that the settings ask for, unless that puts them farther apart than
-/// [`WIDEST`]; and the fewest. Fewer than texels serve, since a line's colours are interpolated.
-const LINES: [f32; 2] = [0.65, 5.0];
+/// Bins along the shortest ellipse of a patch that serve a picture, for each texel that the settings ask for across: unlit
+/// and lit, where lights are asked for each bin; and the fewest.
+const BINS: [f32; 2] = [0.5, 1.6];
+const LEAST_BINS: f32 = 5.0;
 
-/// Greatest distance between lines in texels: sixteen lines and their neighbours lie within 32 texels.
-const WIDEST: f32 = 1.99;
-
-/// Most bins of a patch of several pixels.
-const MOST_BINS: f32 = 256.0;
-
-/// How much longer the widest ellipse of a patch may be across than the narrowest, squared.
-const MOST_RATIO: f32 = 2.25;
-
-/// Bins along the ellipse where a single pixel is asked for.
-const PIXEL_BINS: f32 = 256.0;
-
-/// Bins along the shortest ellipse of a patch that serve a picture. Lights are asked for each bin, so they need more.
-#[must_use]
-pub fn picture_bins(settings: &Settings, is_lit: bool) -> f32 {
-    (settings.lines as f32 * if is_lit { 1.6 } else { 0.5 }).max(5.0)
-}
-
-/// Buffers of sweeps, kept between them.
+/// Buffers of the filter, kept between calls.
 #[derive(Clone, Debug, Default)]
-pub struct Scratch {
-    unlit: Profile<3>,
-    lit: Profile<6>,
-    picked: Vec<PixelLanes>,
-    conics: Vec<Conics>,
-    kernels: Vec<Kernel>,
-    totals: Vec<Totals>,
+pub(super) struct HorizonScratch {
+    patch: PatchScratch,
+    /// How much of each pixel the tables give.
+    shares: Vec<[f32; 8]>,
+    /// Pixels that are swept: vector times 8 plus lane.
+    near: Vec<u8>,
+    found: Vec<Texel>,
 }
 
-/// The mean of the visible texels of a footprint whose centre is the base coordinate, and the number of rows swept. `lights` are asked per visible texel.
-#[must_use]
-pub fn visible_mean(
-    surface: &Surface,
-    footprint: &Footprint,
-    displacement: [f32; 2],
-    settings: &Settings,
-    lights: Option<&LocalLights>,
-) -> (Filtered, u64) {
-    let pixels = [PixelFootprints::splat(footprint, displacement)];
-    let lights = lights.map(std::slice::from_ref).unwrap_or_default();
-    let mut found = [Filtered::default()];
-    let patches = Patches { surface, far: None, pixels: &pixels, settings, num_bins: PIXEL_BINS };
-    let num_rows = patches.means(&[0], lights, &mut Scratch::default(), &mut found);
-    (found[0], num_rows)
-}
-
-/// Up to [`MOST_PIXELS`] pixels of one surface that may share sweeps.
-#[derive(Clone, Copy, Debug)]
-pub struct Patches<'a> {
-    /// Their texture.
-    pub surface: &'a Surface,
-    /// Tables that know where a level loses too much of what hides.
-    pub far: Option<&'a FarField>,
-    /// The pixels, eight a vector.
-    pub pixels: &'a [PixelFootprints],
-    /// Lines and anisotropy.
-    pub settings: &'a Settings,
-    /// Bins along the shortest ellipse: how finely the kernel is cut; see [`picture_bins`].
-    pub num_bins: f32,
-}
-
-/// The extent of a patch: least and greatest `xi` and `q` of its ellipses, the greatest width and the least height.
-#[derive(Clone, Copy, Debug)]
-struct Extent {
-    xi: [f32; 2],
-    q: [f32; 2],
-    half_width: f32,
-    half_height: f32,
-    /// Rows times lines of all pixels, each swept on its own.
-    area: f32,
-}
-
-impl Patches<'_> {
-    /// The means of the picked pixels (vector times 8 plus lane, ascending), into `found`. With `lights`, one a pick,
-    /// they hold diffuse light. Returns the number of rows swept, sixteen lines each.
-    pub fn means(&self, picks: &[u8], lights: &[LocalLights], scratch: &mut Scratch, found: &mut [Filtered]) -> u64 {
-        if picks.is_empty() {
-            return 0;
-        }
-        if let Some(num_rows) = self.patch(picks, lights, scratch, found) {
-            return num_rows;
-        }
-        let middle = picks.len() / 2;
-        let (near_lights, far_lights) = lights.split_at(if lights.is_empty() { 0 } else { middle });
-        let (near, far) = found.split_at_mut(middle);
-        self.means(&picks[..middle], near_lights, scratch, near)
-            + self.means(&picks[middle..], far_lights, scratch, far)
-    }
-
-    /// The mip level that a picked pixel (vector times 8 plus lane) is swept on if it is swept by itself.
-    #[must_use]
-    pub fn level(&self, pick: u8, is_lit: bool) -> usize {
-        let vector = usize::from(pick / 8);
-        let mut picked = Vec::new();
-        masks(&[pick], vector, 1, &mut picked);
-        // One footprint is not larger than itself.
-        self.choose_level(&self.pixels[vector..=vector], &picked, 1, is_lit).map_or(0, |(level, _)| level)
-    }
-
-    /// Sweeps the picked pixels as one patch; `None` where they do not fit into one.
-    fn patch(
-        &self,
-        picks: &[u8],
-        lights: &[LocalLights],
-        scratch: &mut Scratch,
-        found: &mut [Filtered],
-    ) -> Option<u64> {
-        let Scratch { unlit, lit, picked, conics, kernels, totals } = scratch;
-        // Picks ascend: only these vectors hold any.
-        let first_vector = usize::from(picks[0] / 8);
-        let pixels = &self.pixels[first_vector..=usize::from(picks[picks.len() - 1] / 8)];
-        masks(picks, first_vector, pixels.len(), picked);
-        let picked = picked.as_slice();
-        let (index, middle) = self.choose_level(pixels, picked, picks.len(), !lights.is_empty())?;
-        let texels = self.surface.texels_per_repeat(index);
-        conics.clear();
-        let blur = blur(index);
-        let conics_of = |pixels: &PixelFootprints| pixels.conics(texels, self.settings.max_anisotropy).sharpened(blur);
-        conics.extend(pixels.iter().map(conics_of));
-        let [a, c] = [conics[0].a, conics[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
-        let frame = Frame::new(self.surface, index, middle, a < c);
-        let frame = if picks.len() > 1 { frame.fit(pixels, conics, picked)? } else { frame };
-        kernels.clear();
-        let mut left = picks;
-        for (vector, (pixels, conics)) in (first_vector..).zip(pixels.iter().zip(conics)) {
-            let lanes = frame.kernels(pixels, conics);
-            let num_here = left.iter().take_while(|pick| usize::from(**pick / 8) == vector).count();
-            let (here, beyond) = left.split_at(num_here);
-            kernels.extend(here.iter().map(|pick| lanes.lane(usize::from(pick % 8))));
-            left = beyond;
-        }
-        let extent = Extent::of(kernels, frame.depth);
-        let depth = frame.greatest_depth(extent.xi);
-        let num_rows = extent.q[1] * (1.0 + frame.growth.max(0.0)) + depth - extent.q[0];
-        let step = extent.half_height * (2.0 / self.num_bins);
-        let is_wasteful = num_rows * (extent.xi[1] - extent.xi[0]) > extent.area;
-        if picks.len() > 1 && (is_wasteful || extent.q[1] - extent.q[0] > step * MOST_BINS) {
-            return None;
-        }
-        let scale = frame.greatest_scale([extent.q[0] - 1.0, extent.q[0] + num_rows + 1.0])?;
-        totals.clear();
-        totals.resize(picks.len(), Totals::default());
-        let num_lines = (LINES[0] * self.settings.lines as f32).max(LINES[1]);
-        let spacing = (WIDEST / scale).min(extent.half_width * (2.0 / num_lines));
-        let layout = Layout { frame: &frame, most_scale: scale, extent: &extent, spacing, step };
-        let num_rows = if lights.is_empty() {
-            layout.run(unlit, kernels, &[], totals)
-        } else {
-            layout.run(lit, kernels, lights, totals)
-        };
-        for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
-            // Number by number, so that whoever reads one does not wait for all.
-            let mean = totals.mean(!lights.is_empty()).unwrap_or_else(|| {
-                let pixels = &self.pixels[usize::from(pick / 8)];
-                isotropic::bilinear(self.surface, index, pixels.footprint(usize::from(pick % 8)).center)
-            });
-            (found.color, found.normal) = (mean.color, mean.normal);
-        }
-        Some(num_rows)
-    }
-
-    /// The finest level on which the footprints, by the geometric mean of the widest and the narrowest, are at most so many
-    /// texels across as `settings.lines` asks for, and their sweeps short enough; and the means of places and
-    /// displacements. `None` where footprints differ too much.
-    fn choose_level(
-        &self,
-        pixels: &[PixelFootprints],
-        picked: &[PixelLanes],
-        num: usize,
-        is_lit: bool,
-    ) -> Option<(usize, [[f32; 2]; 2])> {
-        let surface = self.surface;
-        let base = surface.texels_per_repeat(0);
-        let means = means(pixels, picked, num);
-        let [du, dv] = [means[1][0] * base[0], means[1][1] * base[1]];
-        let (mut least, mut most, mut long) = (f32::MAX, 0.0_f32, 0.0_f32);
-        for (pixels, picked) in pixels.iter().zip(picked) {
-            let conics = pixels.conics(base, self.settings.max_anisotropy);
-            let greatest = |lanes: PixelLanes| (lanes & *picked).to_array().into_iter().fold(0.0, f32::max);
-            let far = PixelLanes::splat(f32::MAX) & !*picked;
-            least = least.min((conics.short & *picked).fast_max(far).to_array().into_iter().fold(f32::MAX, f32::min));
-            (most, long) = (most.max(greatest(conics.short)), long.max(greatest(conics.long)));
-        }
-        if most > MOST_RATIO * least {
-            return None;
-        }
-        // Under lights no table helps where a level loses what hides behind fine ridges: take one level finer instead.
-        let bias = if is_lit { 1 } else { self.far.map_or(0, |far| far.level_bias([du, dv])) };
-        let (across, walk) = (2.0 * (most * least).sqrt().sqrt(), du.abs().max(dv.abs()));
-        let widest = (self.settings.lines << bias) as f32;
-        let fits = |level: &usize| {
-            let texels = surface.texels_per_repeat(*level);
-            let scale = (texels[0] / base[0]).max(texels[1] / base[1]);
-            across * scale <= widest && (2.0 * long.sqrt() + walk) * scale <= MAX_ROWS
-        };
-        let last = surface.levels.len() - 1;
-        Some(((0..last).find(fits).unwrap_or(last), means))
-    }
-}
-
-/// Four times the variance, in square texels of a level, by which its texels are wider than those of the base level: each is
-/// the mean of a square, variance 1/12, and they are interpolated, variance 1/6.
-fn blur(level: usize) -> f32 {
-    1.0 - 0.25_f32.powi(level as i32)
-}
-
-/// All bits of the lanes that are picked, for so many vectors from the first one on.
-fn masks(picks: &[u8], first_vector: usize, num_vectors: usize, masks: &mut Vec<PixelLanes>) {
-    masks.clear();
-    let mut picks = picks.iter().map(|pick| usize::from(*pick)).peekable();
-    masks.extend((first_vector..first_vector + num_vectors).map(|vector| {
-        let mut bits = [0; 8];
-        while let Some(pick) = picks.next_if(|pick| pick / 8 == vector) {
-            bits[pick % 8] = u32::MAX;
-        }
-        PixelLanes::new(bits.map(f32::from_bits))
-    }));
-}
-
-impl Extent {
-    fn of(kernels: &[Kernel], depth: f32) -> Self {
-        let mut extent = Self {
-            xi: [f32::MAX, f32::MIN],
-            q: [f32::MAX, f32::MIN],
-            half_width: 0.0,
-            half_height: f32::MAX,
-            area: 0.0,
-        };
-        for kernel in kernels {
-            let Kernel { xi, q, half_width, half_height, .. } = *kernel;
-            extent.xi = [extent.xi[0].min(xi - half_width), extent.xi[1].max(xi + half_width)];
-            extent.q = [extent.q[0].min(q - half_height), extent.q[1].max(q + half_height)];
-            extent.half_width = extent.half_width.max(half_width);
-            extent.half_height = extent.half_height.min(half_height);
-            extent.area += 2.0 * half_width * (2.0 * half_height + depth);
-        }
-        extent
-    }
-}
-
-/// How a patch is cut into grids of lines and rows.
-struct Layout<'a> {
-    frame: &'a Frame<'a>,
-    most_scale: f32,
-    extent: &'a Extent,
-    spacing: f32,
-    step: f32,
-}
-
-impl Layout<'_> {
-    /// Sweeps all lines and adds what they see to the pixels. Returns the number of rows.
-    fn run<const CHANNELS: usize>(
-        &self,
-        profile: &mut Profile<CHANNELS>,
-        kernels: &[Kernel],
-        lights: &[LocalLights],
-        totals: &mut [Totals],
-    ) -> u64 {
-        let Extent { xi, q, .. } = *self.extent;
-        let spacing = self.spacing;
-        let num_lines = 2 * ((xi[1] - xi[0]) * (0.5 / spacing)).ceil() as usize;
-        let first = (xi[0] + xi[1]) * 0.5 - spacing * (num_lines as f32 * 0.5 - 0.5);
-        let num_bins = ((q[1] - q[0]) / self.step).ceil().max(1.0) as usize;
-        let mut num_rows = 0;
-        for line in (0..num_lines).step_by(MOST_LINES) {
-            let grid = Grid {
-                frame: self.frame,
-                most_scale: self.most_scale,
-                first: first + line as f32 * spacing,
-                spacing,
-                num_lines: (num_lines - line).min(MOST_LINES),
-                begin: q[0],
-                step: self.step,
-                num_bins,
-            };
-            for (group, range) in grid.ranges(kernels).into_iter().enumerate() {
-                if range[0] < range[1] {
-                    num_rows += profile.sweep(&grid, group, range);
+/// The means of a batch's pixels: what is near is swept together, what is far comes from tables.
+pub(super) fn colors(
+    prepared: &Prepared,
+    batch: &Batch,
+    horizon: &Horizon,
+    scratch: &mut HorizonScratch,
+    out: &mut [Filtered],
+) -> Work {
+    let surface = prepared.surface();
+    let far = far_field(prepared, horizon, batch.is_lit());
+    let far = far.as_deref();
+    let num_bins = if batch.is_fine { FINE_BINS } else { picture_bins(horizon, batch.is_lit()) };
+    let mut lights = batch.lights;
+    let mut num_rows = 0;
+    for (pixels, out) in batch.pixels.chunks(NUM_VECTORS).zip(out.chunks_mut(NUM_VECTORS)) {
+        let HorizonScratch { patch, shares, near, found } = scratch;
+        share_out(prepared, far, pixels, horizon, (shares, near));
+        // Sweep what is near.
+        found.clear();
+        found.resize(near.len(), Texel::default());
+        let (of_these, others) = lights.split_at(if lights.is_empty() { 0 } else { near.len() });
+        let patches = patches(prepared, pixels, horizon, num_bins, batch.is_lit());
+        num_rows += patches.means(near, of_these, patch, found);
+        lights = others;
+        // Blend it with what the tables give.
+        let mut swept = found.iter();
+        for ((pixels, shares), out) in pixels.iter().zip(shares).zip(out) {
+            for lane in pixels.covered() {
+                let near = if shares[lane] < 1.0 { swept.next() } else { None };
+                let far = far.filter(|_| shares[lane] > 0.0);
+                let far = far.map(|far| far.mean(surface, &pixels.lane(lane), horizon.max_anisotropy));
+                match (near, far) {
+                    (Some(near), Some(far)) => out.set(lane, &near.lerp(&far, shares[lane])),
+                    (Some(near), None) => out.set(lane, near),
+                    (None, far) => out.set(lane, &far.unwrap_or_default()),
                 }
             }
-            for (i, (kernel, totals)) in kernels.iter().zip(totals.iter_mut()).enumerate() {
-                totals.add(profile, &grid, kernel, lights.get(i));
-            }
         }
-        num_rows
     }
+    Work { num_tested: num_rows, num_averaged: 0 }
+}
+
+/// What [`colors`] reads for each pixel of a batch.
+pub(super) fn levels(
+    prepared: &Prepared,
+    (pixels, is_lit): (&[Footprints], bool),
+    horizon: &Horizon,
+    scratch: &mut HorizonScratch,
+) -> Vec<[LevelChoice; 8]> {
+    let far = far_field(prepared, horizon, is_lit);
+    let mut all = Vec::with_capacity(pixels.len());
+    for pixels in pixels.chunks(NUM_VECTORS) {
+        let HorizonScratch { patch, shares, near, .. } = scratch;
+        share_out(prepared, far.as_deref(), pixels, horizon, (shares, near));
+        let mut levels = Vec::with_capacity(near.len());
+        patches(prepared, pixels, horizon, picture_bins(horizon, is_lit), is_lit).levels(near, patch, &mut levels);
+        let mut levels = levels.into_iter();
+        all.extend(pixels.iter().zip(shares).map(|(pixels, shares)| {
+            let mut choices = [LevelChoice::default(); 8];
+            for lane in pixels.covered() {
+                let level = if shares[lane] < 1.0 { levels.next() } else { None };
+                choices[lane] = LevelChoice { level: level.unwrap_or(0), blend: 0.0, far_share: shares[lane] };
+            }
+            choices
+        }));
+    }
+    all
+}
+
+/// The tables, if they are wanted: they hold unlit colour.
+fn far_field(prepared: &Prepared, horizon: &Horizon, is_lit: bool) -> Option<std::sync::Arc<FarField>> {
+    if is_lit || !horizon.far_field { None } else { prepared.far_field(horizon.far_field_mib) }
+}
+
+/// How much of each pixel the tables give, and the pixels that they do not give wholly.
+fn share_out(
+    prepared: &Prepared,
+    far: Option<&FarField>,
+    pixels: &[Footprints],
+    horizon: &Horizon,
+    (shares, near): (&mut Vec<[f32; 8]>, &mut Vec<u8>),
+) {
+    shares.clear();
+    near.clear();
+    for (vector, pixels) in pixels.iter().enumerate() {
+        let of_far = |far: &FarField| far.shares(prepared, pixels, horizon.max_anisotropy);
+        let of_far = far.map_or(PixelLanes::ZERO, of_far).to_array();
+        near.extend(pixels.covered().filter(|lane| of_far[*lane] < 1.0).map(|lane| (8 * vector + lane) as u8));
+        shares.push(of_far);
+    }
+}
+
+/// Bins along the shortest ellipse of a patch that serve a picture.
+fn picture_bins(horizon: &Horizon, is_lit: bool) -> f32 {
+    (horizon.lines as f32 * BINS[usize::from(is_lit)]).max(LEAST_BINS)
+}
+
+fn patches<'a>(
+    prepared: &'a Prepared,
+    pixels: &'a [Footprints],
+    horizon: &'a Horizon,
+    num_bins: f32,
+    is_lit: bool,
+) -> Patches<'a> {
+    let loss = if is_lit { None } else { prepared.level_loss() };
+    Patches { surface: prepared.surface(), loss, pixels, horizon, num_bins, is_lit }
 }

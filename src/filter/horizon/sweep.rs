@@ -3,92 +3,20 @@
 //! Bins cut the seen places into equal parts. Sixteen lines at a time read their texels row by row, from the near end to the
 //! far one; what is seen of them, and so the mean of each bin, is found in [`walk`](super::walk).
 
-use super::frame::Frame;
-use super::kernel::Kernel;
+use super::grid::{EMPTY_ROW, GROUP, Grid, Profile, Texels};
+use super::sweep_frame::SweepFrame;
 use super::walk::Walk;
-use crate::filter::unpack_normals;
-use crate::simd::{LineBlend, LineLanes, TexelLanes, halves, high_halves, join, line_indices, low_halves, pick_words};
-use crate::texture::FULL_F32;
-
-/// Most lines of a grid.
-pub(super) const MOST_LINES: usize = 64;
+use crate::simd::{LineBlend, LineLanes, halves, high_halves, join, line_indices, low_halves, pick_words};
+use crate::texture::{FULL_F32, unpack_normals};
 
 /// Most rows that are read before what they show is looked at.
 const READ_AHEAD: usize = 32;
-
-/// Lines that are swept together, as lanes.
-pub(super) const GROUP: usize = 16;
-
-/// A kernel's vector of eight may begin at any line of the grid.
-const WIDTH: usize = MOST_LINES + 8;
-
-/// A value of each line.
-pub(super) type Row = [f32; WIDTH];
-
-/// Lines and bins of a sweep.
-#[derive(Clone, Debug)]
-pub(super) struct Grid<'a> {
-    pub(super) frame: &'a Frame<'a>,
-    /// How much farther apart than in the middle lines are at most.
-    pub(super) most_scale: f32,
-    /// `xi` of the first line, and how far apart lines are; below 1 texel.
-    pub(super) first: f32,
-    pub(super) spacing: f32,
-    pub(super) num_lines: usize,
-    /// The seen place where bins begin, and the length of a bin, in rows from the middle.
-    pub(super) begin: f32,
-    pub(super) step: f32,
-    pub(super) num_bins: usize,
-}
-
-/// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then normal.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Profile<const CHANNELS: usize> {
-    pub(super) bins: Vec<[Row; CHANNELS]>,
-}
-
-impl Grid<'_> {
-    /// The seen places that the pixels ask of each group of lines: first and last; the first is greater where none
-    /// asks.
-    pub(super) fn ranges(&self, kernels: &[Kernel]) -> [[f32; 2]; MOST_LINES / GROUP] {
-        let mut ranges = [[f32::MAX, f32::MIN]; MOST_LINES / GROUP];
-        let inverse = 1.0 / (GROUP as f32 * self.spacing);
-        for kernel in kernels {
-            let Kernel { xi, q, half_width, half_height, .. } = *kernel;
-            let [from, to] = [xi - half_width, xi + half_width].map(|xi| (xi - self.first) * inverse);
-            let last = to.min((self.num_lines - 1) as f32 * (1.0 / GROUP as f32));
-            for range in ranges.iter_mut().take((last + 1.0).max(0.0) as usize).skip(from.max(0.0) as usize) {
-                *range = [range[0].min(q - half_height), range[1].max(q + half_height)];
-            }
-        }
-        ranges
-    }
-}
-
-/// Texels of a group of lines, one of each.
-#[derive(Clone, Copy)]
-pub(super) struct Texels<const CHANNELS: usize> {
-    pub(super) values: [LineLanes; CHANNELS],
-    /// Where they are seen, in bins from the grid's first.
-    pub(super) place: LineLanes,
-}
-
-/// Eight lanes of a row of line values.
-#[inline(always)]
-pub(super) fn load(row: &Row, at: usize) -> TexelLanes {
-    let lanes: &[f32; 8] = row[at..at + 8].try_into().expect("a slice of eight");
-    TexelLanes::new(*lanes)
-}
-
-pub(super) fn lane_indices() -> TexelLanes {
-    TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
-}
 
 impl<const CHANNELS: usize> Profile<CHANNELS> {
     /// Sweeps the lines of a group over the bins between two seen places. Returns the number of rows.
     pub(super) fn sweep(&mut self, grid: &Grid, group: usize, [entry, exit]: [f32; 2]) -> u64 {
         if self.bins.len() < grid.num_bins {
-            self.bins.resize(grid.num_bins, [[0.0; WIDTH]; CHANNELS]);
+            self.bins.resize(grid.num_bins, [EMPTY_ROW; CHANNELS]);
         }
         let bin_at = |place: f32| (place - grid.begin) / grid.step;
         let first_bin = bin_at(entry).max(0.0) as usize;
@@ -101,7 +29,8 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let end_row = first_row + lines.rows_between(start, end);
         let mut last = lines.texels::<CHANNELS>(first_row, lines.start_of(first_row));
         let mut row = first_row + 1;
-        // Rows are read ahead, so that no branch on what they show waits for memory. None of the first ones can be the last.
+        // Read rows ahead, so that no branch on what they show waits for memory. A texel is never seen beyond its own row, so
+        // the first `end - start` rows cannot reach the exit: they are read in one block.
         let mut read = [last; READ_AHEAD];
         let mut num_read = ((end - start) as usize).clamp(1, READ_AHEAD);
         while !walk.is_done() && row < end_row {
@@ -122,7 +51,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
 
 /// A group of lines of a grid.
 struct Lines<'a> {
-    frame: &'a Frame<'a>,
+    frame: &'a SweepFrame<'a>,
     most_scale: f32,
     xi: LineLanes,
     /// Rows down to the deepest relief in the middle of each line, and as many bins.
@@ -171,8 +100,9 @@ impl<'a> Lines<'a> {
     #[inline(always)]
     fn read<const CHANNELS: usize>(&self, first: i32, read: &mut [Texels<CHANNELS>]) {
         let mut starts = [0; READ_AHEAD];
-        let (words, stride) = (self.frame.level.words(), self.frame.level.stride());
-        // One word of each plane first: many rows come from memory at once, where the long work on a row lets few.
+        let (words, stride) = (self.frame.rows.words(), self.frame.rows.stride());
+        // Touch one word of each plane first, so that cache misses of many rows overlap: the work on a row is too long for the
+        // processor to look ahead.
         let mut touched = 0;
         for (start, row) in starts[..read.len()].iter_mut().zip(first..) {
             *start = self.start_of(row);
@@ -187,7 +117,7 @@ impl<'a> Lines<'a> {
     /// Where the lines lie in a row, in texels.
     #[inline(always)]
     fn columns(&self, row: i32) -> LineLanes {
-        let Frame { origin, shear, spread, .. } = *self.frame;
+        let SweepFrame { origin, shear, spread, .. } = *self.frame;
         let q = row as f32 - self.middle;
         // Rows that are read ahead may lie where lines would run together, or farther apart than a run of texels reaches.
         self.xi * (spread * q + 1.0).clamp(0.0, self.most_scale) + (origin[0] + shear * q)
@@ -198,17 +128,17 @@ impl<'a> Lines<'a> {
     fn start_of(&self, row: i32) -> usize {
         let x = LineLanes::splat(self.columns(row).as_array()[0]);
         // By lanes, since the scalar conversion saturates.
-        self.frame.level.start_at(x.floor().fast_trunc_int().as_array()[0], row * self.sign)
+        self.frame.rows.start_at(x.floor().fast_trunc_int().as_array()[0], row * self.sign)
     }
 
     /// The texels of a row.
     #[inline(always)]
     fn texels<const CHANNELS: usize>(&self, row: i32, start: usize) -> Texels<CHANNELS> {
-        let Frame { level, growth, .. } = *self.frame;
+        let SweepFrame { rows, growth, .. } = *self.frame;
         let q = row as f32 - self.middle;
         let x = self.columns(row);
         let place = x - LineLanes::splat(x.as_array()[0]).floor();
-        let (words, stride) = (level.words(), level.stride());
+        let (words, stride) = (rows.words(), rows.stride());
         let cell = place.fast_trunc_int();
         let part = place - LineLanes::from_i32x16(cell);
         let pick = |plane: usize| pick_words(words, start + plane * stride, cell);
@@ -217,7 +147,7 @@ impl<'a> Lines<'a> {
         let color = [low_halves(red_green), high_halves(red_green), low_halves(blue_height)];
         let mut values = [LineLanes::ZERO; CHANNELS];
         values[..3].copy_from_slice(&color);
-        if CHANNELS > 3 && level.has_normals() {
+        if CHANNELS > 3 && rows.has_normals() {
             let [near, far] = pick(2).map(|words| {
                 let [a, b] = halves(words).map(unpack_normals);
                 [0, 1, 2].map(|i| join([a[i], b[i]]))

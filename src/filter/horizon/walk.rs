@@ -3,9 +3,23 @@
 //! Each line keeps `M`, the farthest place seen so far. A row's texel at place `p` makes the part from `M` to `p` visible,
 //! if there is one; the segment between two rows is linear, so the colour of that part is the one at its middle. A line that
 //! passes the end of a bin writes the bin's mean and those of the bins that lie in the rest of the part.
+//!
+//! ```text
+//!   bins        |     0     |     1     |     2     |     3     |
+//!   last row              *                                        seen at its place p
+//!   next row                                    *
+//!   M before                 ^                                     relief nearer than the last row reaches to here
+//!   seen now                 |==|===========|===|                  from M to the place of the next row
+//!                             ^ added to the sum of bin 0, which is full and written
+//!                                ^ all of bin 1 is seen: its colour at its middle is written
+//!                                            ^ begins the sum of bin 2
+//! ```
 
-use super::sweep::{GROUP, Row, Texels};
+use super::grid::{GROUP, Row, Texels};
 use crate::simd::LineLanes;
+
+/// Least length of a segment, in bins, that a place in it is divided by: a shorter one shows one colour.
+const LEAST_SEGMENT: f32 = 1e-6;
 
 /// A group of lines on its way. Places are in bins.
 pub(super) struct Walk<const CHANNELS: usize> {
@@ -54,7 +68,7 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
     pub(super) fn new(num_lines: usize, at: usize, [first_bin, end_bin]: [usize; 2]) -> Self {
         let mut bins = [end_bin as f32; GROUP];
         bins[..(num_lines - at).min(GROUP)].fill(first_bin as f32);
-        // No relief of the first row is seen beyond its own place.
+        // M starts at the first bin: the first row lies before it.
         let record = LineLanes::new(bins);
         Self { record, bin: record, sums: [LineLanes::ZERO; CHANNELS], at, end: LineLanes::splat(end_bin as f32) }
     }
@@ -67,7 +81,7 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
     /// Adds what is seen beyond the record of the segment between two rows.
     #[inline(always)]
     pub(super) fn pass(&mut self, last: &Texels<CHANNELS>, next: &Texels<CHANNELS>, bins: &mut [[Row; CHANNELS]]) {
-        let inverse = LineLanes::ONE / (next.place - last.place).fast_max(LineLanes::splat(1e-6));
+        let inverse = LineLanes::ONE / (next.place - last.place).fast_max(LineLanes::splat(LEAST_SEGMENT));
         let segment = Segment { last, next, inverse };
         let record = self.record.fast_max(next.place).fast_min(self.end);
         let bin_end = self.bin + LineLanes::ONE;

@@ -4,7 +4,13 @@
 //! from the middle of the patch. A line is known by `xi`, its distance from the middle line where `q = 0`:
 //!
 //! ```text
-//! x = e q + xi (1 + k q)
+//!   far end     \  |  /      lines run apart or together by the spread k
+//!   ^   --*------\-|-/------  a row of texels: q rows from the middle, lines cross it at x
+//!   |             \|/
+//!   q   ---------- * ------- the middle of the patch: q = 0, xi = 0 on the middle line
+//!   |             /|\        lines lean by the shear e: x = e q + xi (1 + k q)
+//!   near end     / | \
+//!                  xi ->     the walk goes from the near end to the far one
 //! ```
 //!
 //! with the shear `e = D_x / D_y`. On a plane the displacements of a picture are `D(p) = c (p - foot)`, where `foot` is the
@@ -16,10 +22,10 @@
 //!
 //! Curved surfaces have other growths along and across the lines, and displacements that differ from line to line.
 
-use super::kernel::Kernel;
-use super::pixels::{Conics, PixelFootprints};
+use super::pixels::PixelsOnLines;
+use crate::footprint::{Ellipses, Footprints};
 use crate::simd::{PixelLanes, sum};
-use crate::texture::{Level, Surface};
+use crate::texture::{Rows, Surface};
 
 /// Displacements shorter than this many texels do not hide anything that a texel could show.
 const FLAT: f32 = 1.0 / 64.0;
@@ -35,8 +41,8 @@ const MOST_GROWTH: f32 = 0.5;
 
 /// Where lines and rows of a patch lie in one level.
 #[derive(Clone, Debug)]
-pub(super) struct Frame<'a> {
-    pub(super) level: &'a Level,
+pub(super) struct SweepFrame<'a> {
+    pub(super) rows: &'a Rows,
     /// Whether rows run along v.
     is_turned: bool,
     /// Texels a repeat along the rows and across them.
@@ -56,51 +62,22 @@ pub(super) struct Frame<'a> {
     mean_depth: f32,
 }
 
-/// A vector of pixels on the lines of a frame: the ellipse at line `xi` and seen row `p` has
-/// `r^2 = across (xi - xi_i)^2 + z^2`, `z = along (p - q_i + skew (xi - xi_i))`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Kernels {
-    pub(super) xi: PixelLanes,
-    pub(super) q: PixelLanes,
-    pub(super) along: PixelLanes,
-    pub(super) skew: PixelLanes,
-    pub(super) across: PixelLanes,
-    pub(super) half_width: PixelLanes,
-    pub(super) half_height: PixelLanes,
-}
-
-impl Kernels {
-    #[inline(always)]
-    pub(super) fn lane(&self, i: usize) -> Kernel {
-        let at = |lanes: &PixelLanes| lanes.as_array()[i];
-        Kernel {
-            xi: at(&self.xi),
-            q: at(&self.q),
-            along: at(&self.along),
-            skew: at(&self.skew),
-            across: at(&self.across),
-            half_width: at(&self.half_width),
-            half_height: at(&self.half_height),
-        }
-    }
-}
-
 /// Sums over the picked lanes.
-fn total(pixels: &[PixelFootprints], picked: &[PixelLanes], of: impl Fn(&PixelFootprints) -> PixelLanes) -> f32 {
+fn total(pixels: &[Footprints], picked: &[PixelLanes], of: impl Fn(&Footprints) -> PixelLanes) -> f32 {
     sum(pixels.iter().zip(picked).fold(PixelLanes::ZERO, |all, (pixels, picked)| all + (of(pixels) & *picked)))
 }
 
 /// The means over the picked lanes of place and displacement, in repeats.
-pub(super) fn means(pixels: &[PixelFootprints], picked: &[PixelLanes], num: usize) -> [[f32; 2]; 2] {
+pub(super) fn means(pixels: &[Footprints], picked: &[PixelLanes], num: usize) -> [[f32; 2]; 2] {
     // Relative to one pixel, so that large coordinates lose nothing.
     let lane = (0..8).find(|i| picked[0].as_array()[*i].to_bits() != 0).unwrap_or(0);
-    let first = pixels[0].center.map(|lanes| lanes.as_array()[lane]);
+    let first = pixels[0].base.map(|lanes| lanes.as_array()[lane]);
     let inverse = 1.0 / num as f32;
-    let center = [0, 1].map(|i| first[i] + total(pixels, picked, |p| p.center[i] - first[i]) * inverse);
+    let center = [0, 1].map(|i| first[i] + total(pixels, picked, |p| p.base[i] - first[i]) * inverse);
     [center, [0, 1].map(|i| total(pixels, picked, |p| p.displacement[i]) * inverse)]
 }
 
-impl<'a> Frame<'a> {
+impl<'a> SweepFrame<'a> {
     /// The frame on a level around `middle` and `displacement` (means in repeats) of the picked pixels, without growth.
     pub(super) fn new(
         surface: &'a Surface,
@@ -108,19 +85,18 @@ impl<'a> Frame<'a> {
         [middle, displacement]: [[f32; 2]; 2],
         is_long_along_u: bool,
     ) -> Self {
-        let texels = surface.texels_per_repeat(index);
+        let level = &surface.levels()[index];
+        let texels = level.texels_per_repeat();
         let [du, dv] = [displacement[0] * texels[0], displacement[1] * texels[1]];
         let is_flat = du.abs().max(dv.abs()) < FLAT;
         let is_turned = if is_flat { is_long_along_u } else { du.abs() > dv.abs() };
         let turn = |[u, v]: [f32; 2]| if is_turned { [v, u] } else { [u, v] };
-        let level = if is_turned { &surface.transposed[index] } else { &surface.levels[index] };
         let (middle, texels, [dx, dy]) = (turn(middle), turn(texels), turn([du, dv]));
         let toward = if dy < 0.0 { -1.0 } else { 1.0 };
         let (depth, shear) = if is_flat { (0.0, 0.0) } else { (dy.abs(), dx / dy * toward) };
         let origin = [0, 1].map(|i| middle[i] * texels[i] - 0.5);
-        let mean_depth = surface.levels.last().map_or(0.0, |level| 1.0 - level.height_at(0, 0));
         Self {
-            level,
+            rows: level.rows(is_turned),
             is_turned,
             texels,
             middle,
@@ -131,7 +107,7 @@ impl<'a> Frame<'a> {
             depth,
             growth: 0.0,
             tilt: 0.0,
-            mean_depth,
+            mean_depth: surface.mean_depth(),
         }
     }
 
@@ -141,15 +117,15 @@ impl<'a> Frame<'a> {
 
     /// Place and displacement of pixels in this frame: along the rows and in the walking direction, from the middle.
     #[inline]
-    fn place(&self, pixels: &PixelFootprints) -> [[PixelLanes; 2]; 2] {
-        let [x, y] = self.turn(pixels.center);
+    fn place(&self, pixels: &Footprints) -> [[PixelLanes; 2]; 2] {
+        let [x, y] = self.turn(pixels.base);
         let [dx, dy] = self.turn(pixels.displacement);
         let [tx, ty] = [self.texels[0], self.texels[1] * self.toward];
         [[(x - self.middle[0]) * tx, (y - self.middle[1]) * ty], [dx * tx, dy * ty]]
     }
 
     /// Finds how displacements grow over the picked pixels. `None` where they grow in another way.
-    pub(super) fn fit(mut self, pixels: &[PixelFootprints], conics: &[Conics], picked: &[PixelLanes]) -> Option<Self> {
+    pub(super) fn fit(mut self, pixels: &[Footprints], ellipses: &[Ellipses], picked: &[PixelLanes]) -> Option<Self> {
         if self.depth == 0.0 {
             return Some(self);
         }
@@ -173,13 +149,13 @@ impl<'a> Frame<'a> {
             self.spread = self.growth / self.depth;
         }
         let mut misfit = PixelLanes::ZERO;
-        for ((pixels, conic), &picked) in pixels.iter().zip(conics).zip(picked) {
+        for ((pixels, ellipse), &picked) in pixels.iter().zip(ellipses).zip(picked) {
             let [rx, ry] = self.residuals(pixels);
-            let ([a, c], b) = (self.turn([conic.a, conic.c]), conic.b * self.toward);
-            let r2 = (a * rx * rx + b * rx * ry + c * ry * ry) / conic.f;
+            let ([a, c], b) = (self.turn([ellipse.a, ellipse.c]), ellipse.b * self.toward);
+            let r2 = (a * rx * rx + b * rx * ry + c * ry * ry) / ellipse.f;
             misfit = misfit.fast_max(r2 & picked);
         }
-        // At the mean depth there is none, see `kernels`.
+        // At the mean depth there is none, see `pixels_on_lines`.
         let farthest = self.mean_depth.max(1.0 - self.mean_depth);
         let is_fit = misfit.simd_le(PixelLanes::splat(MOST_MISFIT / (farthest * farthest))).all();
         (is_fit && self.growth.abs() <= MOST_GROWTH).then_some(self)
@@ -187,14 +163,14 @@ impl<'a> Frame<'a> {
 
     /// Pixels across and along the middle's line, and how their displacements differ from the middle's along and across it.
     #[inline]
-    fn growths(&self, pixels: &PixelFootprints) -> [[PixelLanes; 2]; 2] {
+    fn growths(&self, pixels: &Footprints) -> [[PixelLanes; 2]; 2] {
         let [[x, q], [dx, dq]] = self.place(pixels);
         [[x - q * self.shear, q], [dq - self.depth, dx - dq * self.shear]]
     }
 
     /// How far along the rows and across them pixels' displacements are from what the lines take them for.
     #[inline]
-    fn residuals(&self, pixels: &PixelFootprints) -> [PixelLanes; 2] {
+    fn residuals(&self, pixels: &Footprints) -> [PixelLanes; 2] {
         let [[x, q], [along, across]] = self.growths(pixels);
         let ry = along - q * self.growth - x * self.tilt;
         [across - x * (self.spread * self.depth) + ry * self.shear, ry]
@@ -202,22 +178,22 @@ impl<'a> Frame<'a> {
 
     /// The pixels' ellipses on the lines, moved to where the lines see what the pixels see at the mean depth.
     #[inline]
-    pub(super) fn kernels(&self, pixels: &PixelFootprints, conics: &Conics) -> Kernels {
+    pub(super) fn pixels_on_lines(&self, pixels: &Footprints, ellipses: &Ellipses) -> PixelsOnLines {
         let [[x, q], _] = self.place(pixels);
         let [rx, ry] = self.residuals(pixels);
         let (x, q) = (x + rx * self.mean_depth, q + ry * self.mean_depth);
         let scale = q * self.spread + 1.0;
         let xi = (x - q * self.shear) / scale;
         let shear = xi * self.spread + self.shear;
-        let ([a, c], b) = (self.turn([conics.a, conics.c]), conics.b * self.toward);
+        let ([a, c], b) = (self.turn([ellipses.a, ellipses.c]), ellipses.b * self.toward);
         // F = A C - B^2 / 4, which the shear keeps: so A' - B'^2 / 4C' is 1 / C F, without a difference that cancels.
-        let c = ((a * shear + b) * shear + c).fast_max(conics.f / a);
+        let c = ((a * shear + b) * shear + c).fast_max(ellipses.f / a);
         let b = (a * shear * 2.0 + b) * scale;
         let width = c.sqrt() / scale;
-        Kernels {
+        PixelsOnLines {
             xi,
             q,
-            along: (c / conics.f).sqrt(),
+            along: (c / ellipses.f).sqrt(),
             skew: b / (c * 2.0),
             across: PixelLanes::ONE / (width * width),
             half_width: width,

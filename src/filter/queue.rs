@@ -1,12 +1,17 @@
-//! Pixels of one block that wait for their look-ups.
+//! Pixels that wait for their look-ups.
 //!
-//! Of the eight pixels of a pair of quads, small triangles cover one or two. What is seen of a block is therefore lined up
-//! in groups of eight before it is looked up in the texture, unless it is all of a pair.
+//! Of the eight pixels of a pair of quads, small triangles cover one or two. Covered pixels are therefore packed into groups
+//! of eight before they are looked up in the texture, unless all of a pair are covered:
+//!
+//! ```text
+//! pairs     [x . . . . . . .] [. x x . . . . .] [x x x x x x x x]
+//! groups    [0 9 10 _ _ _ _ _]                  [16 17 18 ... 23]     numbers: 8 * pair + lane
+//! ```
 
-use crate::raster::QuadPair;
+use super::batch::Filtered;
 use crate::simd::PixelLanes;
 
-/// Most groups that are looked up at once.
+/// Most groups that are looked up at once: their steps overlap, and eight fit the first cache with the texels they read.
 const AT_ONCE: usize = 8;
 
 /// What the look-ups need to know of eight pixels: u, v and the footprint's size.
@@ -15,7 +20,7 @@ type Group = [PixelLanes; 3];
 /// The pixels, group after group.
 pub(super) struct Queue {
     groups: [Group; AT_ONCE + 1],
-    /// Of each pixel, the pair of the block times 8 plus the lane.
+    /// Of each pixel, the number of the pair times 8 plus the lane.
     pixels: [[u32; 8]; AT_ONCE + 1],
     num: usize,
 }
@@ -35,23 +40,25 @@ impl Queue {
         self.num >= 8 * AT_ONCE
     }
 
-    /// Lines up the pixels of a pair that are seen.
+    /// Lines up the covered pixels of a pair.
     #[inline(always)]
-    pub(super) fn push(&mut self, pair: &QuadPair, index: usize, group: &Group) {
-        if self.num.is_multiple_of(8) && pair.is_whole() {
+    pub(super) fn push(&mut self, covered: u8, index: usize, group: &Group) {
+        if self.num.is_multiple_of(8) && covered == u8::MAX {
             let numbers = std::array::from_fn(|lane| (8 * index + lane) as u32);
             (self.groups[self.num / 8], self.pixels[self.num / 8]) = (*group, numbers);
             self.num += 8;
         } else {
-            self.push_covered(pair.covered(), index, *group);
+            self.push_covered(covered, index, group);
         }
     }
 
     #[inline(never)]
-    fn push_covered(&mut self, covered: impl Iterator<Item = usize>, index: usize, group: Group) {
-        for lane in covered {
+    fn push_covered(&mut self, mut covered: u8, index: usize, group: &Group) {
+        while covered != 0 {
+            let lane = covered.trailing_zeros() as usize;
+            covered &= covered - 1;
             let to = &mut self.groups[self.num / 8];
-            for (to, from) in to.iter_mut().zip(&group) {
+            for (to, from) in to.iter_mut().zip(group) {
                 to.as_mut_array()[self.num % 8] = from.as_array()[lane];
             }
             self.pixels[self.num / 8][self.num % 8] = (8 * index + lane) as u32;
@@ -59,7 +66,7 @@ impl Queue {
         }
     }
 
-    /// Takes pixels that are missing in a lone group for the first, where the others' texels are.
+    /// Fills the empty lanes of a lone group with copies of its first pixel, so that they read texels that are needed anyway.
     pub(super) fn fill_up(&mut self) {
         if self.num < 8 {
             for lanes in &mut self.groups[0] {
@@ -74,16 +81,15 @@ impl Queue {
         &self.groups[..self.num_whole()]
     }
 
-    /// Hands out what was found for one of [`Self::groups`] to the pairs of the block.
+    /// Hands out the colours of one of [`Self::groups`] to the pairs.
     #[inline(always)]
-    pub(super) fn hand_out(&self, group: usize, found: [PixelLanes; 3], colors: &mut [[PixelLanes; 3]]) {
+    pub(super) fn hand_out(&self, group: usize, found: [PixelLanes; 3], out: &mut [Filtered]) {
         let pixels = &self.pixels[group];
         if pixels[0].is_multiple_of(8) && pixels[7] == pixels[0] + 7 {
-            let color = &mut colors[pixels[0] as usize / 8];
-            (0..3).for_each(|c| color[c] = found[c]);
+            out[pixels[0] as usize / 8].color = found;
         } else {
             let num = (self.num - 8 * group).min(8);
-            scatter(&pixels[..num], &found, colors);
+            scatter(&pixels[..num], &found, out);
         }
     }
 
@@ -100,9 +106,9 @@ impl Queue {
 }
 
 #[inline(never)]
-fn scatter(pixels: &[u32], found: &[PixelLanes; 3], colors: &mut [[PixelLanes; 3]]) {
+fn scatter(pixels: &[u32], found: &[PixelLanes; 3], out: &mut [Filtered]) {
     for (lane, pixel) in pixels.iter().enumerate() {
-        let color = &mut colors[*pixel as usize / 8];
+        let color = &mut out[*pixel as usize / 8].color;
         (0..3).for_each(|c| color[c].as_mut_array()[*pixel as usize % 8] = found[c].as_array()[lane]);
     }
 }

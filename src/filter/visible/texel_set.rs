@@ -3,8 +3,8 @@
 //! Rows hold runs of eight neighbouring texels, a bit each, so that membership and visibility are decided a batch at a
 //! time and the sums visit only batches that hold a texel. A texel's place is its column and row in the endless pattern.
 
-use super::Ellipse;
-use crate::simd::TexelLanes;
+use crate::footprint::{Ellipse, RowQuadric};
+use crate::simd::{TexelLanes, lane_columns};
 
 /// One row of a [`TexelSet`].
 #[derive(Clone, Copy, Debug)]
@@ -53,25 +53,21 @@ impl TexelSet {
     }
 
     /// Whether the set holds no texel.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bits.iter().all(|&bits| bits == 0)
     }
 
     /// How many texels the set holds.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.bits.iter().map(|bits| bits.count_ones() as usize).sum()
     }
 
     /// Whether the set holds a texel.
-    #[must_use]
     pub fn contains(&self, x: i32, y: i32) -> bool {
         self.place(x, y).is_some_and(|(byte, bit)| self.bits[byte] & bit != 0)
     }
 
     /// The byte and bit of a texel, if a batch spans it.
-    #[must_use]
     pub fn place(&self, x: i32, y: i32) -> Option<(usize, u8)> {
         let row = &self.rows[self.rows.binary_search_by_key(&y, |row| row.y).ok()?];
         let column = usize::try_from(x - row.x).ok()?;
@@ -86,34 +82,5 @@ impl TexelSet {
                 .filter(move |i| self.bits[first + i / 8] >> (i % 8) & 1 == 1)
                 .map(|i| [row.x + i as i32, row.y])
         })
-    }
-}
-
-/// The columns of eight neighbouring texels.
-#[must_use]
-pub(crate) fn lane_columns(x: i32) -> TexelLanes {
-    TexelLanes::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + x as f32
-}
-
-/// `r^2 = (A U^2 + B U V + C V^2) / F` along a row of constant V.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RowQuadric {
-    a: f32,
-    bv: f32,
-    cvv: f32,
-}
-
-impl RowQuadric {
-    /// The quadric of the row at V.
-    #[must_use]
-    pub(super) fn new(ellipse: &Ellipse, v: f32) -> Self {
-        let inverse_f = 1.0 / ellipse.f;
-        Self { a: ellipse.a * inverse_f, bv: ellipse.b * v * inverse_f, cvv: ellipse.c * v * v * inverse_f }
-    }
-
-    /// `r^2` at eight places U.
-    #[must_use]
-    pub(super) fn at(&self, u: TexelLanes) -> TexelLanes {
-        (u * self.a + self.bv) * u + self.cvv
     }
 }

@@ -6,16 +6,11 @@
 //! takes few texels, in runs that lie in a few rows.
 
 use super::sums::WideSums;
-use crate::filter::{Filtered, PixelFootprints};
-use crate::settings::Settings;
+use crate::footprint::levels::{DISC_VARIANCE, for_lines};
+use crate::footprint::{Ellipses, Footprints};
+use crate::settings::Ewa;
 use crate::simd::{LineLanes, PixelLanes, i32x8, lanes, line_indices, mask};
-use crate::texture::{APRON, Level, RowStarts, Surface};
-
-/// Variance of `exp(-2 r^2)` over the unit disc along a line through its middle.
-const VARIANCE: f32 = 0.171_7;
-
-/// A level is taken on which interpolation has up to so many times the variance that is wanted across the ellipse.
-const MOST_BLUR: f32 = 1.7;
+use crate::texture::{APRON, RowStarts, Rows, Surface, Texel};
 
 /// The disc's Gaussian seen from the side: its integral along lines at a distance t from the middle, over that at t = 0, is
 /// about `z (c0 + c1 z + c2 z^2)` with `z = 1 - t^2`, off by 0.02.
@@ -27,15 +22,23 @@ const HALF_LENGTH: f32 = 1.0 / 0.412_934_7;
 /// Least variance along the line, in square texels: that of interpolation.
 const LEAST_VARIANCE: f32 = 1.0 / 6.0;
 
-/// Farthest texel from the pattern's first: numbers up to there, and some beyond, fit 32 bits.
+/// Texel coordinates are clamped to so far from the pattern's first: beyond, an f32 cannot tell neighbours apart, and they
+/// and some beyond fit an i32.
 const FARTHEST: f32 = (1 << 29) as f32;
+
+/// Texel budgets that lines tell apart: fewer than the first leave no line, more than the last nothing to gain.
+const LEAST_BUDGET: f32 = 16.0;
+const MOST_BUDGET: f32 = 4096.0;
+
+/// Columns of a line for each texel of the budget: two or three rows of texels are read for each column.
+const COLUMNS_PER_TEXEL: f32 = 0.4;
 
 /// Columns that are read at once.
 const COLUMNS: usize = 16;
 
-/// The longer axes of eight pixels' ellipses, each in the texels of its level, transposed where it is steep.
+/// The longer axes of eight pixels' ellipses, each in the texels of its level, with rows along v where it is steep.
 #[derive(Clone, Copy, Debug)]
-pub struct Lines {
+pub struct LongAxes {
     level: i32x8,
     /// Whether rows run along v.
     is_turned: i32x8,
@@ -53,27 +56,22 @@ pub struct Lines {
     width: PixelLanes,
 }
 
-impl Lines {
-    /// For pixels in repeats; of the settings `max_anisotropy` and `texel_budget` count.
-    #[must_use]
-    pub fn new(surface: &Surface, pixels: &PixelFootprints, settings: &Settings) -> Self {
-        let base = surface.texels_per_repeat(0);
-        let conics = pixels.conics(base, settings.max_anisotropy);
-        // Two or three rows of a line's columns, and so many square texels of variance along it, are within the budget.
-        let most = (settings.texel_budget.max(16) as f32).min(4096.0) * (0.4 * 0.5 / HALF_LENGTH);
-        let along = conics.long * VARIANCE + 0.25;
-        let for_width = power_of_4((conics.short * (4.0 * VARIANCE) + 1.0) * MOST_BLUR);
-        let for_budget = power_of_4(along * (4.0 / (most * most)));
-        let last = i32x8::splat(surface.levels.len() as i32 - 1);
-        let level = for_width.max(for_budget).max(i32x8::ZERO).min(last);
+impl LongAxes {
+    /// For pixels around their hits.
+    pub fn new(surface: &Surface, pixels: &Footprints, ewa: &Ewa) -> Self {
+        let ellipses = Ellipses::new(pixels, surface.base().texels_per_repeat(), ewa.max_anisotropy);
+        // Two or three rows of a line's columns are within the budget.
+        let most = (ewa.texel_budget as f32).clamp(LEAST_BUDGET, MOST_BUDGET) * (COLUMNS_PER_TEXEL * 0.5 / HALF_LENGTH);
+        let along = ellipses.long * DISC_VARIANCE + 0.25;
+        let level = for_lines(&ellipses, most, surface.last_level());
         // Square texels of the level in one of the base level.
         let per_texel = lanes((i32x8::splat(127) - level - level) << 23_i32);
         let variance = (along * per_texel - 1.0 / 12.0).fast_max(PixelLanes::splat(LEAST_VARIANCE));
-        let across = (conics.short * VARIANCE + 0.25) * per_texel - 1.0 / 12.0;
+        let across = (ellipses.short * DISC_VARIANCE + 0.25) * per_texel - 1.0 / 12.0;
         // The direction of the longer axis: the eigenvector of [[C, -B/2], [-B/2, A]].
-        let (is_wide, half_b) = (conics.c.simd_gt(conics.a), conics.b * -0.5);
-        let x = is_wide.select(conics.long - conics.a, half_b);
-        let y = is_wide.select(half_b, conics.long - conics.c);
+        let (is_wide, half_b) = (ellipses.c.simd_gt(ellipses.a), ellipses.b * -0.5);
+        let x = is_wide.select(ellipses.long - ellipses.a, half_b);
+        let y = is_wide.select(half_b, ellipses.long - ellipses.c);
         let is_turned = y.abs().simd_gt(x.abs());
         let (x, y) = (is_turned.select(y, x), is_turned.select(x, y));
         // A circle has no direction, and takes its row.
@@ -83,10 +81,9 @@ impl Lines {
         // Rows meet a slanted line aslant.
         let width = (across * (slope * slope + 1.0) * 6.0).fast_max(PixelLanes::ONE).sqrt();
         let texels = texels_a_repeat(surface, level);
-        // So far away that an f32 tells no texels apart any more, any will do.
         let bounded =
             |place: PixelLanes| place.fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST));
-        let place = [0, 1].map(|i| bounded(pixels.center[i] * texels[i] - 0.5));
+        let place = [0, 1].map(|i| bounded(pixels.hit[i] * texels[i] - 0.5));
         let place = [is_turned.select(place[1], place[0]), is_turned.select(place[0], place[1])];
         let reach = reach.fast_max(PixelLanes::ONE);
         let [first, last] = [(place[0] - reach).ceil(), (place[0] + reach).floor()];
@@ -103,18 +100,15 @@ impl Lines {
     }
 
     /// The mip level that a pixel's texels are of.
-    #[must_use]
     pub fn level(&self, lane: usize) -> usize {
         self.level.as_array()[lane] as usize
     }
 
     /// The mean of a pixel, and how many texels were read. Only surfaces that have normals may be asked for them.
-    #[must_use]
     #[inline(always)]
-    pub fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Filtered, u64) {
+    pub fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Texel, u64) {
         let is_turned = self.is_turned.as_array()[lane] != 0;
-        let levels = if is_turned { &surface.transposed } else { &surface.levels };
-        let level = &levels[self.level(lane)];
+        let rows = surface.levels()[self.level(lane)].rows(is_turned);
         let at = |lanes: &PixelLanes| lanes.as_array()[lane];
         let [y0, slope, start, width] = [&self.place[1], &self.slope, &self.start, &self.width].map(at);
         let inverse_width = LineLanes::splat(1.0 / width);
@@ -124,20 +118,21 @@ impl Lines {
         let mut num_rows = 0;
         for block in (0..num).step_by(COLUMNS) {
             let start = start + block as f32;
+            // Weigh the columns by the disc's profile.
             let u = line_indices() + start;
             let t = u * inverse_reach;
             let z = (LineLanes::ONE - t * t).fast_max(LineLanes::ZERO);
             let weight = ((z * PROFILE[2] + PROFILE[1]) * z + PROFILE[0]) * z;
-            // The rows near the line between its first column and its last.
+            // Find the rows near the line between its first column and its last.
             let length = (COLUMNS as i32).min(num - block) - 1;
             let ends = [start * slope + y0, (start + length as f32) * slope + y0];
             let lowest = floor(ends[0].min(ends[1]) - width) + 1;
             let num_more = floor(ends[0].max(ends[1]) + width) - lowest - 2;
             let y = u * slope + (y0 - lowest as f32);
-            let column = level.run_start(first + block);
-            let starts = level.row_starts(lowest);
-            let mut near = NearRows { level, column, starts, y, inverse_width, weight };
-            // Three rows are the rule: no branch to foretell.
+            let column = rows.run_start(first + block);
+            let starts = rows.row_starts(lowest);
+            let mut near = NearRows { rows, column, starts, y, inverse_width, weight };
+            // Nearly every block needs three rows: unrolled, they take no mispredicted branch.
             for _ in 0..3 {
                 near.add_next(&mut sums);
             }
@@ -153,7 +148,7 @@ impl Lines {
 
 /// The rows near a line in sixteen columns.
 struct NearRows<'a> {
-    level: &'a Level,
+    rows: &'a Rows,
     /// Where the first column's texels start in a row.
     column: usize,
     starts: RowStarts<'a>,
@@ -167,7 +162,7 @@ impl NearRows<'_> {
     #[inline(always)]
     fn add_next<const HAS_NORMALS: bool>(&mut self, sums: &mut WideSums<HAS_NORMALS>) {
         let part = (LineLanes::ONE - self.y.abs() * self.inverse_width).fast_max(LineLanes::ZERO);
-        sums.add_run(self.level, self.starts.next() + self.column, self.weight * part);
+        sums.add_run(self.rows, self.starts.next() + self.column, self.weight * part);
         self.y -= 1.0;
     }
 }
@@ -180,21 +175,15 @@ fn floor(y: f32) -> i32 {
 
 const _: () = assert!(COLUMNS <= APRON, "a run of columns is one load");
 
-/// The greatest `n` with `4^n` up to a size above 0.
-fn power_of_4(size: PixelLanes) -> i32x8 {
-    // The exponent of a float is the whole part of its logarithm.
-    ((mask(size) >> 23_i32) - 127) >> 1_i32
-}
-
 /// Texels a repeat of a level for each lane.
 fn texels_a_repeat(surface: &Surface, levels: i32x8) -> [PixelLanes; 2] {
     let level = levels.as_array()[0];
     if levels.simd_eq(i32x8::splat(level)).all() {
-        return surface.texels_per_repeat(level as usize).map(PixelLanes::splat);
+        return surface.levels()[level as usize].texels_per_repeat().map(PixelLanes::splat);
     }
     let mut texels = [[0.0; 8]; 2];
     for (lane, &level) in levels.as_array().iter().enumerate() {
-        [texels[0][lane], texels[1][lane]] = surface.texels_per_repeat(level as usize);
+        [texels[0][lane], texels[1][lane]] = surface.levels()[level as usize].texels_per_repeat();
     }
     texels.map(PixelLanes::new)
 }

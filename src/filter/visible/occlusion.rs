@@ -7,14 +7,13 @@
 //!
 //! Beyond the paper's letter, the ellipse has Heckbert's kernel and weight, and where the relief jumps between two pixels of
 //! a quad, formula (3), which spans the jump and so takes in texels of two unrelated parts and all around them, gives way
-//! to formula (2) (see [`differences_for`](super::differences_for); `max_stretch` 0 keeps the letter). As in the paper, a
+//! to formula (2) (`max_stretch`; 0 keeps the letter). As in the paper, a
 //! texel counts whole or not at all, so one seen from its side counts like one that faces the eye.
 
-use super::TexelSet;
-use super::texel_set::TexelRow;
+use super::texel_set::{TexelRow, TexelSet};
 use crate::settings::Visibility;
 use crate::simd::{TexelLanes, high_half};
-use crate::texture::{FULL_F32, Level};
+use crate::texture::{FULL_F32, Level, Rows};
 
 /// How much higher than the ray, in stored units of height, relief must be to hide a texel: rounding alone must not.
 const TOLERANCE: f32 = 1.0 / 16.0;
@@ -22,7 +21,7 @@ const TOLERANCE: f32 = 1.0 / 16.0;
 /// The heights of a level and the direction to the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Occlusion<'a> {
-    level: &'a Level,
+    rows: &'a Rows,
     /// Texels towards the eye per step; the longer component is 1 or -1.
     step: [f32; 2],
     runs_along_x: bool,
@@ -32,16 +31,14 @@ pub struct Occlusion<'a> {
 
 impl<'a> Occlusion<'a> {
     /// For the displacement (texels of the level down to the deepest relief) of a pixel's view ray.
-    #[must_use]
     pub fn new(level: &'a Level, displacement: [f32; 2]) -> Self {
         let [dx, dy] = displacement;
         let runs_along_x = dx.abs() > dy.abs();
         let length = dx.abs().max(dy.abs()).max(1e-3);
-        Self { level, step: [-dx / length, -dy / length], runs_along_x, rise: FULL_F32 / length }
+        Self { rows: level.rows(false), step: [-dx / length, -dy / length], runs_along_x, rise: FULL_F32 / length }
     }
 
     /// Which of the texels of `bits`, the first at column `x` of row `y`, the eye sees.
-    #[must_use]
     pub fn visible(&self, x: i32, y: i32, bits: u8) -> u8 {
         let mut height = self.heights(x as f32, y as f32);
         let mut hidden = 0;
@@ -61,7 +58,6 @@ impl<'a> Occlusion<'a> {
 
     /// The texel that covers a hidden one: where its ray first meets higher relief, the higher of the two texels across
     /// the ray, so that a chain of coverers rises and ends. `None` for a visible texel.
-    #[must_use]
     pub fn coverer(&self, x: i32, y: i32) -> Option<[i32; 2]> {
         let mut height = self.heights(x as f32, y as f32).as_array()[0];
         for i in 1..=(FULL_F32 / self.rise).ceil() as i32 {
@@ -84,8 +80,8 @@ impl<'a> Occlusion<'a> {
 
     /// Heights as stored of eight neighbouring texels.
     fn heights(&self, x: f32, y: f32) -> TexelLanes {
-        let row = self.level.row(y as i32);
-        high_half(Level::run(row, self.level.run_start(x as i32) + self.level.stride()))
+        let row = self.rows.row(y as i32);
+        high_half(Rows::run(row, self.rows.run_start(x as i32) + self.rows.stride()))
     }
 
     /// Heights under eight neighbouring rays after `i` steps, interpolated across the ray.

@@ -10,13 +10,11 @@
 //! between texels, and the shorter axis is widened where the longer exceeds the greatest anisotropy.
 
 use super::Footprint;
-use crate::settings::Formulas;
-
-/// What is added to A and C, in square texels: four times the variance, 1/6, of bilinear interpolation between texels.
-pub const RECONSTRUCTION: f32 = 4.0 / 6.0;
+use crate::settings::{Formulas, RECONSTRUCTION};
+use crate::simd::TexelLanes;
 
 /// Least half axis in texels: what a magnified pixel covers is that much at least, so that no division overflows.
-const LEAST_AXIS: f32 = 1.0 / 256.0;
+pub const LEAST_AXIS: f32 = 1.0 / 256.0;
 
 /// The coefficients of formula (1).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +31,6 @@ pub struct Ellipse {
 
 impl Ellipse {
     /// Formula (1) for a footprint, in texels of a level with that many texels a repeat.
-    #[must_use]
     pub fn new(footprint: &Footprint, texels: [f32; 2], formulas: Formulas) -> Self {
         let [ux, vx] = [footprint.dx[0] * texels[0], footprint.dx[1] * texels[1]];
         let [uy, vy] = [footprint.dy[0] * texels[0], footprint.dy[1] * texels[1]];
@@ -45,7 +42,6 @@ impl Ellipse {
     }
 
     /// The ellipse with the reconstruction kernel added and its anisotropy bounded. A printed F stays as printed.
-    #[must_use]
     pub fn widened(self, max_anisotropy: f32, formulas: Formulas) -> Self {
         let wide = Self { a: self.a + RECONSTRUCTION, c: self.c + RECONSTRUCTION, ..self };
         let bounded = wide.bounded(max_anisotropy);
@@ -53,13 +49,11 @@ impl Ellipse {
     }
 
     /// The ellipse with its shorter axis widened to the longer over `max_anisotropy`, and at least to [`LEAST_AXIS`].
-    #[must_use]
     pub fn bounded(self, max_anisotropy: f32) -> Self {
         self.bounded_with_axes(max_anisotropy).0
     }
 
     /// [`bounded`](Self::bounded), and its [`squared_axes`](Self::squared_axes).
-    #[must_use]
     pub fn bounded_with_axes(self, max_anisotropy: f32) -> (Self, [f32; 2]) {
         let Self { a, b, c, .. } = self;
         let [short, long] = self.squared_axes();
@@ -80,7 +74,6 @@ impl Ellipse {
     }
 
     /// Squares of the shorter and the longer half axis in texels: the eigenvalues of `[[C, -B/2], [-B/2, A]]`.
-    #[must_use]
     pub fn squared_axes(&self) -> [f32; 2] {
         let Self { a, b, c, .. } = *self;
         let (mean, half) = ((a + c) * 0.5, ((a - c) * (a - c) * 0.25 + b * b * 0.25).sqrt());
@@ -89,21 +82,23 @@ impl Ellipse {
         [((a * c - b * b * 0.25) / long.max(f32::MIN_POSITIVE)).max(0.0), long]
     }
 
+    /// `r^2 = (A U^2 + B U V + C V^2) / F`: up to 1 inside.
+    pub fn r2(&self, [u, v]: [f32; 2]) -> f32 {
+        ((self.a * u + self.b * v) * u + self.c * v * v) / self.f
+    }
+
     /// Area in square texels.
-    #[must_use]
     pub fn area(&self) -> f32 {
         let determinant = (4.0 * self.a * self.c - self.b * self.b).max(f32::MIN_POSITIVE);
         2.0 * std::f32::consts::PI * self.f / determinant.sqrt()
     }
 
     /// Greatest |V| inside.
-    #[must_use]
     pub fn half_height(&self) -> f32 {
         (4.0 * self.a * self.f / (4.0 * self.a * self.c - self.b * self.b).max(f32::MIN_POSITIVE)).sqrt()
     }
 
     /// The least and greatest U inside on the line of constant V; `None` where the line misses.
-    #[must_use]
     pub fn row(&self, v: f32) -> Option<[f32; 2]> {
         let (half_b, c) = (self.b * 0.5 * v, self.c * v * v - self.f);
         let discriminant = half_b * half_b - self.a * c;
@@ -111,5 +106,26 @@ impl Ellipse {
             let root = discriminant.sqrt();
             [(-half_b - root) / self.a, (-half_b + root) / self.a]
         })
+    }
+}
+
+/// `r^2 = (A U^2 + B U V + C V^2) / F` along a row of constant V.
+#[derive(Clone, Copy, Debug)]
+pub struct RowQuadric {
+    a: f32,
+    bv: f32,
+    cvv: f32,
+}
+
+impl RowQuadric {
+    /// The quadric of the row at V.
+    pub fn new(ellipse: &Ellipse, v: f32) -> Self {
+        let inverse_f = 1.0 / ellipse.f;
+        Self { a: ellipse.a * inverse_f, bv: ellipse.b * v * inverse_f, cvv: ellipse.c * v * v * inverse_f }
+    }
+
+    /// `r^2` at eight places U.
+    pub fn at(&self, u: TexelLanes) -> TexelLanes {
+        (u * self.a + self.bv) * u + self.cvv
     }
 }

@@ -1,0 +1,298 @@
+//! Patches: pixels that are swept together.
+//!
+//! A patch is planned first: its mip level, where its lines run, how they are cut. Pixels that one patch cannot hold well are
+//! split in two, at last into single pixels. What is planned is then swept, or only told to who asks for the levels.
+
+use super::grid::{Grid, MOST_LINES, Profile};
+use super::kernel::Totals;
+use super::pixels::PixelOnLines;
+use super::sweep_frame::{SweepFrame, means};
+use crate::filter::points;
+use crate::footprint::levels::{SweepExtent, for_sweep};
+use crate::footprint::{Ellipses, Footprints};
+use crate::light::LocalLights;
+use crate::relief::LevelLoss;
+use crate::settings::Horizon;
+use crate::simd::{PixelLanes, bits_mask};
+use crate::texture::{Surface, Texel};
+
+/// Most pixels of a patch.
+pub(super) const MOST_PIXELS: usize = 256;
+
+const _: () = assert!(MOST_PIXELS <= 1 << u8::BITS, "a pick is a byte");
+
+/// Lines across the widest ellipse of a patch for each texel that the settings ask for, unless that puts them farther apart
+/// than [`WIDEST`]; and the fewest. Fewer lines than texels serve, since a line's colours are interpolated.
+const LINES: [f32; 2] = [0.65, 5.0];
+
+/// Greatest distance between lines in texels: sixteen lines and their neighbours lie within 32 texels, two loads.
+const WIDEST: f32 = 1.99;
+
+/// Most bins of a patch of several pixels: as many as fit the second cache with their 64 lines.
+const MOST_BINS: f32 = 256.0;
+
+/// How much longer the widest ellipse of a patch may be across than the narrowest, squared: the narrowest decides how finely
+/// bins cut, the widest how many lines there are.
+const MOST_RATIO: f32 = 2.25;
+
+/// Buffers of sweeps, kept between them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PatchScratch {
+    unlit: Profile<3>,
+    lit: Profile<6>,
+    picked: Vec<PixelLanes>,
+    ellipses: Vec<Ellipses>,
+    pixels: Vec<PixelOnLines>,
+    totals: Vec<Totals>,
+}
+
+/// Up to [`MOST_PIXELS`] pixels of one surface that may share sweeps. A pick is a pixel's vector times 8 plus its lane; picks
+/// ascend.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patches<'a> {
+    pub(super) surface: &'a Surface,
+    /// Where a level loses too much of what hides; `None` under lights.
+    pub(super) loss: Option<&'a LevelLoss>,
+    /// The pixels, eight a vector.
+    pub(super) pixels: &'a [Footprints],
+    pub(super) horizon: &'a Horizon,
+    /// Bins along the shortest ellipse: how finely the kernel is cut.
+    pub(super) num_bins: f32,
+    pub(super) is_lit: bool,
+}
+
+/// A patch that one sweep can hold.
+struct Plan<'a> {
+    level: usize,
+    frame: SweepFrame<'a>,
+    extent: Extent,
+    /// Greatest distance between lines over that in the middle.
+    most_scale: f32,
+    /// Distance between lines in the middle, in texels.
+    spacing: f32,
+    /// Length of a bin in rows.
+    step: f32,
+}
+
+/// The extent of a patch: least and greatest `xi` and `q` of its ellipses, the greatest width and the least height.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    xi: [f32; 2],
+    q: [f32; 2],
+    half_width: f32,
+    half_height: f32,
+    /// Rows times lines of all pixels, each swept on its own.
+    area: f32,
+}
+
+impl<'a> Patches<'a> {
+    /// The means of the picked pixels into `found`. With `lights`, one a pick, they hold diffuse light. Returns the number of
+    /// rows swept, sixteen lines each.
+    pub(super) fn means(
+        &self,
+        picks: &[u8],
+        lights: &[LocalLights],
+        scratch: &mut PatchScratch,
+        found: &mut [Texel],
+    ) -> u64 {
+        if picks.is_empty() {
+            return 0;
+        }
+        if let Some(plan) = self.plan(picks, scratch) {
+            return self.sweep(&plan, (picks, lights), scratch, found);
+        }
+        let middle = picks.len() / 2;
+        let (near_lights, far_lights) = lights.split_at(if lights.is_empty() { 0 } else { middle });
+        let (near, far) = found.split_at_mut(middle);
+        self.means(&picks[..middle], near_lights, scratch, near)
+            + self.means(&picks[middle..], far_lights, scratch, far)
+    }
+
+    /// The mip levels that [`Self::means`] sweeps the picked pixels on, one after the other.
+    pub(super) fn levels(&self, picks: &[u8], scratch: &mut PatchScratch, levels: &mut Vec<usize>) {
+        if picks.is_empty() {
+            return;
+        }
+        if let Some(plan) = self.plan(picks, scratch) {
+            levels.extend(picks.iter().map(|_| plan.level));
+            return;
+        }
+        let (near, far) = picks.split_at(picks.len() / 2);
+        self.levels(near, scratch, levels);
+        self.levels(far, scratch, levels);
+    }
+
+    /// Plans the picked pixels as one patch, whose lines are left in the scratch; `None` where they do not fit into one.
+    fn plan(&self, picks: &[u8], scratch: &mut PatchScratch) -> Option<Plan<'a>> {
+        let PatchScratch { picked, ellipses, pixels: on_lines, .. } = scratch;
+        // Picks ascend: only these vectors hold any.
+        let first_vector = usize::from(picks[0] / 8);
+        let pixels = &self.pixels[first_vector..=usize::from(picks[picks.len() - 1] / 8)];
+        masks(picks, first_vector, pixels.len(), picked);
+        let (level, middle) = self.choose_level(pixels, picked, picks.len())?;
+        // Lay the lines.
+        let texels = self.surface.levels()[level].texels_per_repeat();
+        let blur = blur(level);
+        ellipses.clear();
+        ellipses.extend(pixels.iter().map(|p| Ellipses::new(p, texels, self.horizon.max_anisotropy).sharpened(blur)));
+        let [a, c] = [ellipses[0].a, ellipses[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
+        let frame = SweepFrame::new(self.surface, level, middle, a < c);
+        let frame = if picks.len() > 1 { frame.fit(pixels, ellipses, picked)? } else { frame };
+        // Put the pixels on them.
+        on_lines.clear();
+        let mut left = picks;
+        for (vector, (pixels, ellipses)) in (first_vector..).zip(pixels.iter().zip(ellipses)) {
+            let lanes = frame.pixels_on_lines(pixels, ellipses);
+            let num_here = left.iter().take_while(|pick| usize::from(**pick / 8) == vector).count();
+            let (here, beyond) = left.split_at(num_here);
+            on_lines.extend(here.iter().map(|pick| lanes.lane(usize::from(pick % 8))));
+            left = beyond;
+        }
+        // Refuse what single sweeps would do with less work.
+        let extent = Extent::of(on_lines, frame.depth);
+        let depth = frame.greatest_depth(extent.xi);
+        let num_rows = extent.q[1] * (1.0 + frame.growth.max(0.0)) + depth - extent.q[0];
+        let step = extent.half_height * (2.0 / self.num_bins);
+        let is_wasteful = num_rows * (extent.xi[1] - extent.xi[0]) > extent.area;
+        if picks.len() > 1 && (is_wasteful || extent.q[1] - extent.q[0] > step * MOST_BINS) {
+            return None;
+        }
+        let most_scale = frame.greatest_scale([extent.q[0] - 1.0, extent.q[0] + num_rows + 1.0])?;
+        let num_lines = (LINES[0] * self.horizon.lines as f32).max(LINES[1]);
+        let spacing = (WIDEST / most_scale).min(extent.half_width * (2.0 / num_lines));
+        Some(Plan { level, frame, extent, most_scale, spacing, step })
+    }
+
+    /// Sweeps a planned patch.
+    fn sweep(
+        &self,
+        plan: &Plan,
+        (picks, lights): (&[u8], &[LocalLights]),
+        scratch: &mut PatchScratch,
+        found: &mut [Texel],
+    ) -> u64 {
+        let PatchScratch { unlit, lit, pixels, totals, .. } = scratch;
+        totals.clear();
+        totals.resize(picks.len(), Totals::default());
+        let num_rows = if self.is_lit {
+            plan.run(lit, pixels, lights, totals)
+        } else {
+            plan.run(unlit, pixels, &[], totals)
+        };
+        for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
+            let mean = totals.mean(self.is_lit).unwrap_or_else(|| {
+                let pixel = self.pixels[usize::from(pick / 8)].lane(usize::from(pick % 8));
+                points::bilinear(&self.surface.levels()[plan.level], pixel.base)
+            });
+            // Written one f32 at a time: a vector store followed by scalar loads would stall store forwarding.
+            (found.color, found.normal) = (mean.color, mean.normal);
+        }
+        num_rows
+    }
+
+    /// The level of a patch, by the geometric mean of the widest and the narrowest footprint; and the means of places and
+    /// displacements. `None` where footprints differ too much.
+    fn choose_level(
+        &self,
+        pixels: &[Footprints],
+        picked: &[PixelLanes],
+        num: usize,
+    ) -> Option<(usize, [[f32; 2]; 2])> {
+        let base = self.surface.base();
+        let means = means(pixels, picked, num);
+        let [du, dv] = base.in_texels(means[1]);
+        let (mut least, mut most, mut long) = (f32::MAX, 0.0_f32, 0.0_f32);
+        for (pixels, picked) in pixels.iter().zip(picked) {
+            let ellipses = Ellipses::new(pixels, base.texels_per_repeat(), self.horizon.max_anisotropy);
+            let greatest = |lanes: PixelLanes| (lanes & *picked).to_array().into_iter().fold(0.0, f32::max);
+            let far = PixelLanes::splat(f32::MAX) & !*picked;
+            least = least.min((ellipses.short & *picked).fast_max(far).to_array().into_iter().fold(f32::MAX, f32::min));
+            (most, long) = (most.max(greatest(ellipses.short)), long.max(greatest(ellipses.long)));
+        }
+        if most > MOST_RATIO * least {
+            return None;
+        }
+        let bias = match self.loss {
+            Some(loss) => loss.bias([du, dv]),
+            // Under lights no table helps where a level loses what hides behind fine ridges: one level finer instead.
+            None => usize::from(self.is_lit),
+        };
+        let across = 2.0 * (most * least).sqrt().sqrt();
+        let extent = SweepExtent { across, along: 2.0 * long.sqrt(), depth: du.abs().max(dv.abs()) };
+        Some((for_sweep(self.surface, &extent, (self.horizon.lines << bias) as f32), means))
+    }
+}
+
+/// Four times the variance, in square texels of a level, by which its texels are wider than those of the base level: each is
+/// the mean of a square, variance 1/12, and they are interpolated, variance 1/6.
+fn blur(level: usize) -> f32 {
+    1.0 - 0.25_f32.powi(level as i32)
+}
+
+/// All bits of the lanes that are picked, for so many vectors from the first one on.
+fn masks(picks: &[u8], first_vector: usize, num_vectors: usize, masks: &mut Vec<PixelLanes>) {
+    let mut bits = [0_u8; MOST_PIXELS / 8];
+    picks.iter().for_each(|pick| bits[usize::from(pick / 8)] |= 1 << (pick % 8));
+    masks.clear();
+    masks.extend(bits[first_vector..][..num_vectors].iter().map(|bits| bits_mask(*bits)));
+}
+
+impl Extent {
+    fn of(pixels: &[PixelOnLines], depth: f32) -> Self {
+        let mut extent = Self {
+            xi: [f32::MAX, f32::MIN],
+            q: [f32::MAX, f32::MIN],
+            half_width: 0.0,
+            half_height: f32::MAX,
+            area: 0.0,
+        };
+        for pixel in pixels {
+            let PixelOnLines { xi, q, half_width, half_height, .. } = *pixel;
+            extent.xi = [extent.xi[0].min(xi - half_width), extent.xi[1].max(xi + half_width)];
+            extent.q = [extent.q[0].min(q - half_height), extent.q[1].max(q + half_height)];
+            extent.half_width = extent.half_width.max(half_width);
+            extent.half_height = extent.half_height.min(half_height);
+            extent.area += 2.0 * half_width * (2.0 * half_height + depth);
+        }
+        extent
+    }
+}
+
+impl Plan<'_> {
+    /// Sweeps all lines and adds what they see to the pixels. Returns the number of rows.
+    fn run<const CHANNELS: usize>(
+        &self,
+        profile: &mut Profile<CHANNELS>,
+        pixels: &[PixelOnLines],
+        lights: &[LocalLights],
+        totals: &mut [Totals],
+    ) -> u64 {
+        let Extent { xi, q, .. } = self.extent;
+        let spacing = self.spacing;
+        let num_lines = 2 * ((xi[1] - xi[0]) * (0.5 / spacing)).ceil() as usize;
+        let first = (xi[0] + xi[1]) * 0.5 - spacing * (num_lines as f32 * 0.5 - 0.5);
+        let num_bins = ((q[1] - q[0]) / self.step).ceil().max(1.0) as usize;
+        let mut num_rows = 0;
+        for line in (0..num_lines).step_by(MOST_LINES) {
+            let grid = Grid {
+                frame: &self.frame,
+                most_scale: self.most_scale,
+                first: first + line as f32 * spacing,
+                spacing,
+                num_lines: (num_lines - line).min(MOST_LINES),
+                begin: q[0],
+                step: self.step,
+                num_bins,
+            };
+            for (group, range) in grid.ranges(pixels).into_iter().enumerate() {
+                if range[0] < range[1] {
+                    num_rows += profile.sweep(&grid, group, range);
+                }
+            }
+            for (i, (pixel, totals)) in pixels.iter().zip(totals.iter_mut()).enumerate() {
+                totals.add(profile, &grid, pixel, lights.get(i));
+            }
+        }
+        num_rows
+    }
+}

@@ -1,0 +1,117 @@
+//! A surface with all that is made of it once.
+
+use super::far_field::FarField;
+use crate::footprint::Footprint;
+use crate::relief::{HeightField, LevelLoss, displacement, march};
+use crate::settings::Filter;
+use crate::simd::PixelLanes;
+use crate::texture::Surface;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// A surface ready to be filtered: with its height field, what its mip levels lose in occlusion, and tables of what is seen
+/// from afar. What takes long is made when it is first asked for, and kept; copies share it.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    surface: Arc<Surface>,
+    relief: Option<Arc<Relief>>,
+    has_far_field: bool,
+}
+
+/// What is made of the heights.
+#[derive(Debug)]
+struct Relief {
+    field: HeightField,
+    loss: OnceLock<LevelLoss>,
+    /// The tables, if the surface has any, for so many MiB.
+    far: Mutex<Option<(u32, Option<Arc<FarField>>)>>,
+}
+
+impl Prepared {
+    /// Prepares a surface.
+    pub fn new(surface: impl Into<Arc<Surface>>) -> Self {
+        let surface = surface.into();
+        let relief = (surface.relief_depth() > 0.0).then(|| {
+            Arc::new(Relief {
+                field: HeightField::new(&surface),
+                loss: OnceLock::new(),
+                far: Mutex::default(),
+            })
+        });
+        Self { surface, relief, has_far_field: true }
+    }
+
+    /// The same surface drawn flat.
+    pub fn without_relief(&self) -> Self {
+        Self { relief: None, ..self.clone() }
+    }
+
+    /// The same surface without tables for distant footprints.
+    pub fn without_far_field(&self) -> Self {
+        Self { has_far_field: false, ..self.clone() }
+    }
+
+    /// Makes now what a filter would make when it is first asked for a colour.
+    pub fn make_ready(&self, filter: &Filter, is_lit: bool) {
+        match filter {
+            Filter::Horizon(horizon) if !is_lit => {
+                self.level_loss();
+                if horizon.far_field {
+                    self.far_field(horizon.far_field_mib);
+                }
+            }
+            Filter::Horizon(_)
+            | Filter::Nearest
+            | Filter::Bilinear
+            | Filter::Trilinear(_)
+            | Filter::Ewa(_)
+            | Filter::Visible(_)
+            | Filter::Parallax(_)
+            | Filter::Truth(_) => {}
+        }
+    }
+
+    /// The pixel at `base` with the derivatives `dx` and `dy` of the flat polygon's coordinates, in repeats a pixel, and the hit
+    /// of its view ray. `view` is the direction from the eye in the frame of the texture: how far it goes along u, along v and
+    /// down, all in repeats; any length above 0.
+    pub fn footprint(&self, base: [f32; 2], dx: [f32; 2], dy: [f32; 2], view: [f32; 3]) -> Footprint {
+        let Some(field) = self.field() else { return Footprint::new(base, dx, dy, [0.0; 2]) };
+        let displacement = displacement(&view.map(PixelLanes::splat), field.relief_depth);
+        let depth = march(field, &base.map(PixelLanes::splat), &displacement).as_array()[0];
+        let displacement = displacement.map(|lanes| lanes.as_array()[0]);
+        let hit = [0, 1].map(|i| base[i] + displacement[i] * depth);
+        Footprint { hit, ..Footprint::new(base, dx, dy, displacement) }
+    }
+
+    /// The texels.
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// The heights; `None` where the surface is flat.
+    pub fn field(&self) -> Option<&HeightField> {
+        self.relief.as_deref().map(|relief| &relief.field)
+    }
+
+    /// What levels lose in occlusion; `None` where the surface is flat.
+    pub(super) fn level_loss(&self) -> Option<&LevelLoss> {
+        let loss = &self.relief.as_deref()?.loss;
+        // Made before the cell is asked: a cell that waits while its maker waits for other tasks would stop both.
+        if loss.get().is_none() {
+            loss.set(LevelLoss::new(&self.surface)).ok();
+        }
+        loss.get()
+    }
+
+    /// Tables of at most so many MiB; `None` for a surface that has none.
+    pub(super) fn far_field(&self, mib: u32) -> Option<Arc<FarField>> {
+        let far = &self.relief.as_deref().filter(|_| self.has_far_field)?.far;
+        let kept = far.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        if let Some((_, far)) = kept.filter(|(kept, _)| *kept == mib) {
+            return far;
+        }
+        // Made without the lock, for the reason above; whoever is last is kept, and all are the same.
+        let made = FarField::new(&self.surface, mib).map(Arc::new);
+        *far.lock().unwrap_or_else(PoisonError::into_inner) = Some((mib, made.clone()));
+        made
+    }
+}

@@ -1,0 +1,68 @@
+//! The prepared surface of each material.
+
+use crate::filter::Prepared;
+use crate::scene::Scene;
+use crate::settings::{Lighting, Settings};
+use crate::texture::Surface;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Most texels of all surfaces together that far-field tables are built for: some seconds of work. Surfaces beyond, in the
+/// order of the materials, are drawn without.
+const MOST_FAR_TEXELS: usize = 1 << 22;
+
+/// The surfaces of a scene, ready for its settings. Materials that share a surface share what is made of it.
+#[derive(Debug)]
+pub(crate) struct PreparedScene {
+    surfaces: Vec<Prepared>,
+    /// The same drawn flat, as they are where relief is not traced.
+    flat: Vec<Prepared>,
+    /// The surface of each material that has one.
+    of_material: Vec<Option<usize>>,
+}
+
+impl PreparedScene {
+    /// The surfaces with their height fields.
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let mut surfaces: Vec<Arc<Surface>> = Vec::new();
+        let mut index_of = |surface: &Arc<Surface>| {
+            surfaces.iter().position(|other| Arc::ptr_eq(other, surface)).unwrap_or_else(|| {
+                surfaces.push(surface.clone());
+                surfaces.len() - 1
+            })
+        };
+        let of_material = scene.materials.iter().map(|material| material.surface.as_ref().map(&mut index_of)).collect();
+        let mut left = MOST_FAR_TEXELS;
+        let has_far_field = surfaces.iter().map(|surface| {
+            let num_texels = surface.base().size().iter().product();
+            let fits = surface.relief_depth() > 0.0 && num_texels <= left;
+            left -= if fits { num_texels } else { 0 };
+            fits
+        });
+        let has_far_field: Vec<bool> = has_far_field.collect();
+        let surfaces: Vec<_> = surfaces
+            .into_par_iter()
+            .zip(has_far_field)
+            .map(|(surface, has_far_field)| {
+                let prepared = Prepared::new(surface);
+                if has_far_field { prepared } else { prepared.without_far_field() }
+            })
+            .collect();
+        let flat = surfaces.iter().map(Prepared::without_relief).collect();
+        Self { surfaces, flat, of_material }
+    }
+
+    /// Makes what frames with these settings need, so that no frame has to wait for it.
+    pub(crate) fn make_ready(&self, settings: &Settings) {
+        if settings.parallax {
+            let is_lit = settings.lighting == Lighting::Lit;
+            self.surfaces.par_iter().for_each(|prepared| prepared.make_ready(&settings.filter, is_lit));
+        }
+    }
+
+    /// The surface of a material, if it has one; drawn flat unless relief is traced.
+    pub(crate) fn of_material(&self, material: usize, has_relief: bool) -> Option<&Prepared> {
+        let surfaces = if has_relief { &self.surfaces } else { &self.flat };
+        Some(&surfaces[self.of_material[material]?])
+    }
+}

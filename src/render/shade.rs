@@ -1,0 +1,242 @@
+//! The colours of a block of quads: footprints, filter, light.
+
+use super::prepared::PreparedScene;
+use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Scratch, Work};
+use crate::footprint::Footprints;
+use crate::light::{LocalLights, SurfacePoint};
+use crate::raster::{AttributePlanes, LitPlanes, Plane, Pool, QuadBlock, QuadPair};
+use crate::scene::{Material, Scene};
+use crate::settings::{FootprintRule, Lighting, Settings};
+use crate::simd::PixelLanes;
+use crate::texture::{FULL_F32, Texel};
+use glam::Vec3;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Most pairs of quads whose footprints are made at once: they stay in the first cache, and are a whole number of the
+/// horizon's patches.
+const PAIRS_AT_ONCE: usize = 64;
+
+type Colors = Vec<[PixelLanes; 3]>;
+
+/// Shades quads of a frame.
+pub(crate) struct Shader<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    prepared: &'a PreparedScene,
+    samples: Option<SampleOffsets>,
+    rule: FootprintRule,
+    pool: &'a Pool<ShadeScratch>,
+    num_texels: [AtomicU64; 2],
+}
+
+/// Buffers of shading, kept between blocks.
+#[derive(Debug, Default)]
+pub(crate) struct ShadeScratch {
+    filter: Scratch,
+    footprints: Vec<Footprints>,
+    lights: Vec<LocalLights>,
+    filtered: Vec<Filtered>,
+}
+
+/// What all pixels of a block lie on.
+#[derive(Clone, Copy)]
+struct Ground<'a> {
+    material: &'a Material,
+    prepared: &'a Prepared,
+}
+
+impl<'a> Shader<'a> {
+    pub(crate) fn new(
+        scene: &'a Scene,
+        settings: &'a Settings,
+        prepared: &'a PreparedScene,
+        pool: &'a Pool<ShadeScratch>,
+    ) -> Self {
+        let (samples, rule) = (settings.filter.samples(), settings.filter.footprint_rule());
+        Self { scene, settings, prepared, samples, rule, pool, num_texels: Default::default() }
+    }
+
+    /// What filtering took so far.
+    pub(super) fn work(&self) -> Work {
+        let [num_tested, num_averaged] = self.num_texels.each_ref().map(|num| num.load(Ordering::Relaxed));
+        Work { num_tested, num_averaged }
+    }
+
+    /// Appends the linear colours of a block's pairs; those of helper lanes are anything.
+    pub(super) fn shade(&self, block: &QuadBlock, colors: &mut Colors) {
+        let material = &self.scene.materials[block.material];
+        let Some(prepared) = self.prepared.of_material(block.material, self.settings.parallax) else {
+            return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
+        };
+        let ground = Ground { material, prepared };
+        let mut scratch = self.pool.take();
+        if let Some(samples) = &self.samples {
+            return colors.extend(block.pairs().map(|pair| self.sampled(&ground, &pair, samples, &mut scratch)));
+        }
+        for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
+            let end = block.num_pairs().min(first + PAIRS_AT_ONCE);
+            self.filtered(&ground, (block, first..end), &mut scratch, colors);
+        }
+    }
+
+    /// Pixels of a material without a texture.
+    fn plain(&self, pair: &QuadPair, material: &Material) -> [PixelLanes; 3] {
+        let mut colors = [Vec3::ZERO; 8];
+        for lane in pair.covered() {
+            colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
+                Some(lights) => material.diffuse * lights.diffuse(Vec3::Z) + lights.specular(Vec3::Z, material),
+                None => material.diffuse,
+            };
+        }
+        in_lanes(&colors)
+    }
+
+    /// Pixels by a filter that takes a footprint for a pixel.
+    fn filtered(
+        &self,
+        ground: &Ground,
+        (block, pairs): (&QuadBlock, Range<usize>),
+        scratch: &mut ShadeScratch,
+        colors: &mut Colors,
+    ) {
+        let ShadeScratch { filter, footprints, lights, filtered } = scratch;
+        lights.clear();
+        self.footprints(ground.prepared, (block, pairs.clone()), footprints);
+        if self.is_lit() {
+            let pairs = pairs.clone().map(|index| block.pair(index));
+            lights.extend(pairs.flat_map(|pair| {
+                pair.covered().filter_map(move |lane| self.lights_at(&pair, lane, pixel_center(&pair, lane)))
+            }));
+        }
+        filtered.clear();
+        filtered.resize(pairs.len(), Filtered::default());
+        let batch = Batch { pixels: footprints, lights, is_fine: false };
+        self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
+        if self.is_lit() {
+            let mut lights = lights.iter();
+            colors.extend(footprints.iter().zip(filtered.iter()).map(|(pixels, filtered)| {
+                let mut colors = [Vec3::ZERO; 8];
+                for (lane, lights) in pixels.covered().zip(&mut lights) {
+                    colors[lane] = self.lit(ground, &filtered.lane(lane), Some(lights));
+                }
+                in_lanes(&colors)
+            }));
+        } else {
+            colors.extend(filtered.iter().map(|filtered| ground.tinted(&filtered.color)));
+        }
+    }
+
+    /// The footprints of pairs of a block, as the filter wants them.
+    pub(crate) fn footprints(
+        &self,
+        prepared: &Prepared,
+        (block, pairs): (&QuadBlock, Range<usize>),
+        footprints: &mut Vec<Footprints>,
+    ) {
+        let field = prepared.field();
+        footprints.clear();
+        footprints.extend(pairs.map(|index| {
+            let pair = block.pair(index);
+            let view = if field.is_some() { pair.view() } else { [PixelLanes::ZERO; 3] };
+            Footprints::of_quads(&pair.uv, &view, field, &self.rule, pair.covered_bits())
+        }));
+    }
+
+    /// Pixels that are means over samples of the screen, each with a ray of its own and shaded on its own.
+    fn sampled(
+        &self,
+        ground: &Ground,
+        pair: &QuadPair,
+        samples: &SampleOffsets,
+        scratch: &mut ShadeScratch,
+    ) -> [PixelLanes; 3] {
+        let field = ground.prepared.field();
+        let none = [PixelLanes::ZERO; 3];
+        let pixels = Footprints::of_quads(&pair.uv, &none, None, &FootprintRule::FLAT, pair.covered_bits());
+        let mut colors = [Vec3::ZERO; 8];
+        for lane in pair.covered() {
+            let planes = pair.planes[lane / 4];
+            let [center_x, center_y] = pixel_center(pair, lane);
+            let (mut sum, mut num) = (Vec3::ZERO, 0.0);
+            for &([dx, dy], num_samples) in &samples.groups {
+                let (x, y) = (dx + center_x, dy + center_y);
+                // Beyond the horizon there is no surface to sample.
+                let is_before = eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
+                let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
+                let (uv, view) = planes.at(x, y);
+                let rays =
+                    Footprints::of_samples((&uv, &view), field, self.rule.is_traced, &pixels.lane(lane), covered);
+                let mut filtered = [Filtered::default()];
+                let batch = Batch { pixels: &[rays], lights: &[], is_fine: false };
+                self.count(self.settings.filter.colors(ground.prepared, &batch, &mut scratch.filter, &mut filtered));
+                for i in rays.covered() {
+                    let lights = self.lights_at(pair, lane, [x.as_array()[i], y.as_array()[i]]);
+                    sum += self.lit(ground, &filtered[0].lane(i), lights.as_ref());
+                    num += 1.0;
+                }
+            }
+            colors[lane] = sum / f32::max(num, 1.0);
+        }
+        in_lanes(&colors)
+    }
+
+    fn is_lit(&self) -> bool {
+        self.settings.lighting == Lighting::Lit
+    }
+
+    fn count(&self, work: Work) {
+        self.num_texels[0].fetch_add(work.num_tested, Ordering::Relaxed);
+        self.num_texels[1].fetch_add(work.num_averaged, Ordering::Relaxed);
+    }
+
+    /// The colour of a filtered texel.
+    fn lit(&self, ground: &Ground, texel: &Texel, lights: Option<&LocalLights>) -> Vec3 {
+        let color = Vec3::from(texel.color) * ground.material.diffuse * ground.scale();
+        let Some(lights) = lights else { return color };
+        let normal = Vec3::from(texel.normal);
+        let specular = lights.specular(normal, ground.material);
+        if self.settings.filter.asks_for_lights() { color + specular } else { color * lights.diffuse(normal) + specular }
+    }
+
+    /// The lights at a place on the screen, if there is lighting.
+    fn lights_at(&self, pair: &QuadPair, lane: usize, [x, y]: [f32; 2]) -> Option<LocalLights> {
+        let planes: &AttributePlanes = pair.planes[lane / 4];
+        let lit = planes.lit.as_deref().filter(|_| self.is_lit())?;
+        let [a, b, c] = planes.inverse_w;
+        let w = 1.0 / (a * x + b * y + c);
+        let at = |planes: &[Plane; 3]| Vec3::from(planes.map(|[a, b, c]| (a * x + b * y + c) * w));
+        let LitPlanes { position, normal, tangent_u, tangent_v } = lit;
+        let point =
+            SurfacePoint { position: at(position), normal: at(normal), tangents: [at(tangent_u), at(tangent_v)] };
+        Some(LocalLights::at(&point, self.scene.camera.eye, &self.scene.lights, self.scene.ambient))
+    }
+}
+
+impl Ground<'_> {
+    /// What the unit of stored colours is worth.
+    fn scale(&self) -> f32 {
+        self.prepared.surface().color_scale() / FULL_F32
+    }
+
+    /// Stored colours as the material shows them.
+    #[inline(always)]
+    fn tinted(&self, stored: &[PixelLanes; 3]) -> [PixelLanes; 3] {
+        let scale = self.scale();
+        std::array::from_fn(|c| stored[c] * self.material.diffuse[c] * scale)
+    }
+}
+
+fn in_lanes(colors: &[Vec3; 8]) -> [PixelLanes; 3] {
+    [0, 1, 2].map(|c| PixelLanes::new(colors.map(|color| color[c])))
+}
+
+fn eval([a, b, c]: &Plane, x: PixelLanes, y: PixelLanes) -> PixelLanes {
+    x * *a + y * *b + *c
+}
+
+/// Where a lane's pixel has its centre on the screen.
+fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
+    let [x, y] = pair.pixel(lane);
+    [x as f32 + 0.5, y as f32 + 0.5]
+}

@@ -1,0 +1,288 @@
+//! The filters, and what each of them can be told.
+
+use crate::error::{Error, Result, within};
+
+/// Which texels make up a pixel's colour. Each filter carries its own options, all with defaults:
+///
+/// ```
+/// use basrelief::{Ewa, Filter};
+///
+/// let filter = Filter::Ewa(Ewa { max_anisotropy: 16.0, ..Ewa::default() });
+/// assert_ne!(filter, Filter::Ewa(Ewa::default()));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    /// The one texel under the hit, base level.
+    Nearest,
+    /// Four texels around the hit, base level.
+    Bilinear,
+    /// Bilinear on the two mip levels next to the footprint's longer axis, blended.
+    Trilinear(Trilinear),
+    /// Elliptical weighted average over the ellipse of formula (1).
+    Ewa(Ewa),
+    /// The paper's method: the texels of the ellipse that the relief does not hide.
+    Visible(Visible),
+    /// The floating horizon: visible texels by their visible length, in one sweep.
+    Horizon(Horizon),
+    /// Common practice, to compare with: 32 linear steps, a secant step, 16x anisotropic mip choice.
+    Parallax(Rays),
+    /// Ground truth: rays drawn from the filter kernel, each traced to its exact hit.
+    Truth(Rays),
+}
+
+/// Which texture coordinates the derivatives are differences of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Derivatives {
+    /// Formula (2): undisplaced coordinates.
+    Flat,
+    /// Formula (3): coordinates displaced by the relief.
+    Relief,
+}
+
+/// Which reading of the paper's formulas is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Formulas {
+    /// As the derivation demands (Heckbert).
+    Meant,
+    /// Letter by letter as the paper prints them, misprints included.
+    Printed,
+}
+
+/// How [`Filter::Visible`] finds the hidden texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Visibility {
+    /// A ray from every texel of the ellipse to the eye.
+    Exact,
+    /// Rows from both ends, each until its first hidden texel; what lies between is skipped.
+    TwoEnded,
+    /// A ray from every texel; a hidden one leads to the texel that covers it; a buffer keeps each from counting twice.
+    Resolved,
+}
+
+/// What [`Filter::Trilinear`] can be told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trilinear {
+    /// Formula (2) or (3) for the footprint. Default: [`Derivatives::Relief`].
+    pub derivatives: Derivatives,
+    /// The paper's formulas as meant or as printed. Default: [`Formulas::Meant`].
+    pub formulas: Formulas,
+}
+
+/// What [`Filter::Ewa`] can be told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ewa {
+    /// Formula (2) or (3) for the ellipse. Default: [`Derivatives::Relief`].
+    pub derivatives: Derivatives,
+    /// The paper's formulas as meant or as printed; as printed takes every texel. Default: [`Formulas::Meant`].
+    pub formulas: Formulas,
+    /// The mip level is chosen so that an ellipse holds at most this many texels, and coarser still where its texels
+    /// sample the Gaussian well; 0: always the base level, as in the paper, and every texel. Default: 256.
+    pub texel_budget: u32,
+    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
+    pub max_anisotropy: f32,
+    /// Whether every texel of the ellipse counts. Else those next to its longer axis do, on a level as coarse as the
+    /// shorter one allows: several times as fast, and `cut` and `texel_kernel` do not count. Default: `false`.
+    pub every_texel: bool,
+    /// Where the Gaussian `exp(-2 r^2)` is cut, in pixels, 1 to 1.5: 1 is the paper's ellipse. Default: 1.
+    pub cut: f32,
+    /// What is added to A and C of formula (1) for the base level's texels, in square texels, 0.25 to 1: four times the
+    /// variance of what interpolates between them. Default: [`RECONSTRUCTION`]; 1 is Heckbert's.
+    pub texel_kernel: f32,
+}
+
+/// What [`Filter::Visible`] can be told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Visible {
+    /// How hidden texels are found. Default: [`Visibility::Exact`].
+    pub visibility: Visibility,
+    /// Formula (2) or (3) for the ellipse. Default: [`Derivatives::Relief`].
+    pub derivatives: Derivatives,
+    /// The paper's formulas as meant or as printed. Default: [`Formulas::Meant`].
+    pub formulas: Formulas,
+    /// The mip level is chosen so that an ellipse holds at most this many texels; 0: always the base level, as in the
+    /// paper. Default: 256.
+    pub texel_budget: u32,
+    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
+    pub max_anisotropy: f32,
+    /// Longest difference of formula (3) over that of (2) that is taken for a slope of the relief; a longer one is a jump,
+    /// where (2) stands. 1 to 1e6, or 0: never a jump, as in the paper. Default: 4.
+    pub max_stretch: f32,
+}
+
+/// What [`Filter::Horizon`] can be told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Horizon {
+    /// Most texels across a footprint's shorter axis, 2 to 64: picks the mip level, and how finely lines and bins cut the
+    /// footprint (two lines for three texels, five at least). More is finer and slower. Default: 10.
+    pub lines: u32,
+    /// Whether tables of the seen colour serve distant footprints, unlit. Default: `true`.
+    pub far_field: bool,
+    /// Most memory of those tables for each material in MiB, 1 to 4096. Default: 32.
+    pub far_field_mib: u32,
+    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
+    pub max_anisotropy: f32,
+}
+
+/// What [`Filter::Parallax`] and [`Filter::Truth`] can be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rays {
+    /// Rays a pixel, 1 to 65536. Default: 64.
+    pub samples: u32,
+}
+
+/// What `texel_kernel` is by default, in square texels: four times the variance, 1/6, of bilinear interpolation.
+pub const RECONSTRUCTION: f32 = 4.0 / 6.0;
+
+/// What `max_anisotropy` is by default.
+const MAX_ANISOTROPY: f32 = 64.0;
+
+const RELIEF: (Derivatives, Formulas) = (Derivatives::Relief, Formulas::Meant);
+const TRILINEAR: Trilinear = Trilinear { derivatives: RELIEF.0, formulas: RELIEF.1 };
+const EWA: Ewa = Ewa {
+    derivatives: RELIEF.0,
+    formulas: RELIEF.1,
+    texel_budget: 256,
+    max_anisotropy: MAX_ANISOTROPY,
+    every_texel: false,
+    cut: 1.0,
+    texel_kernel: RECONSTRUCTION,
+};
+const VISIBLE: Visible = Visible {
+    visibility: Visibility::Exact,
+    derivatives: RELIEF.0,
+    formulas: RELIEF.1,
+    texel_budget: 256,
+    max_anisotropy: MAX_ANISOTROPY,
+    max_stretch: 4.0,
+};
+const HORIZON: Horizon = Horizon { lines: 10, far_field: true, far_field_mib: 32, max_anisotropy: MAX_ANISOTROPY };
+const RAYS: Rays = Rays { samples: 64 };
+
+impl Default for Trilinear {
+    fn default() -> Self {
+        TRILINEAR
+    }
+}
+
+impl Default for Ewa {
+    fn default() -> Self {
+        EWA
+    }
+}
+
+impl Default for Visible {
+    fn default() -> Self {
+        VISIBLE
+    }
+}
+
+impl Default for Horizon {
+    fn default() -> Self {
+        HORIZON
+    }
+}
+
+impl Default for Rays {
+    fn default() -> Self {
+        RAYS
+    }
+}
+
+impl Default for Filter {
+    fn default() -> Self {
+        Self::Horizon(HORIZON)
+    }
+}
+
+/// How a filter's footprints are made of the quad's coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FootprintRule {
+    /// Formula (2) or (3).
+    pub derivatives: Derivatives,
+    /// As meant or as printed.
+    pub formulas: Formulas,
+    /// See [`Visible::max_stretch`]; 0 takes no difference for a jump.
+    pub max_stretch: f32,
+    /// Whether the view ray is followed to the relief; else the hit is the base place.
+    pub is_traced: bool,
+}
+
+impl FootprintRule {
+    /// Formula (2) as meant, on the polygon.
+    pub const FLAT: Self =
+        Self { derivatives: Derivatives::Flat, formulas: Formulas::Meant, max_stretch: 0.0, is_traced: false };
+}
+
+impl Filter {
+    /// Every filter with its default options.
+    pub const ALL: [Self; 8] = [
+        Self::Nearest,
+        Self::Bilinear,
+        Self::Trilinear(TRILINEAR),
+        Self::Ewa(EWA),
+        Self::Visible(VISIBLE),
+        Self::Horizon(HORIZON),
+        Self::Parallax(RAYS),
+        Self::Truth(RAYS),
+    ];
+
+    /// How its footprints are made.
+    pub fn footprint_rule(&self) -> FootprintRule {
+        let traced = |derivatives, formulas, max_stretch| FootprintRule {
+            derivatives,
+            formulas,
+            max_stretch,
+            is_traced: true,
+        };
+        match *self {
+            Self::Nearest | Self::Bilinear | Self::Truth(_) => FootprintRule { is_traced: true, ..FootprintRule::FLAT },
+            Self::Trilinear(Trilinear { derivatives, formulas }) => traced(derivatives, formulas, 0.0),
+            Self::Ewa(Ewa { derivatives, formulas, .. }) => traced(derivatives, formulas, 0.0),
+            Self::Visible(Visible { derivatives, formulas, max_stretch, .. }) => {
+                traced(derivatives, formulas, max_stretch)
+            }
+            // They find what is seen by themselves, around the base place.
+            Self::Horizon(_) | Self::Parallax(_) => FootprintRule::FLAT,
+        }
+    }
+
+    /// Longest allowed axis of its ellipse over the shortest; without an ellipse of its own, the default.
+    pub fn max_anisotropy(&self) -> f32 {
+        match *self {
+            Self::Ewa(Ewa { max_anisotropy, .. })
+            | Self::Visible(Visible { max_anisotropy, .. })
+            | Self::Horizon(Horizon { max_anisotropy, .. }) => max_anisotropy,
+            Self::Nearest | Self::Bilinear | Self::Trilinear(_) | Self::Parallax(_) | Self::Truth(_) => {
+                MAX_ANISOTROPY
+            }
+        }
+    }
+
+    /// Checks every option against its range.
+    ///
+    /// # Errors
+    /// Names the first option whose value is out of its range.
+    pub fn validate(&self) -> Result<()> {
+        match *self {
+            Self::Nearest | Self::Bilinear | Self::Trilinear(_) => Ok(()),
+            Self::Ewa(Ewa { max_anisotropy, cut, texel_kernel, .. }) => {
+                within("cut", cut, 1.0, 1.5)?;
+                within("texel_kernel", texel_kernel, 0.25, 1.0)?;
+                within("max_anisotropy", max_anisotropy, 1.0, 1e6)
+            }
+            Self::Visible(Visible { max_anisotropy, max_stretch, .. }) => {
+                within("max_anisotropy", max_anisotropy, 1.0, 1e6)?;
+                if !(max_stretch == 0.0 || (1.0..=1e6).contains(&max_stretch)) {
+                    return Err(Error::setting("max_stretch", format!("{max_stretch} is not 0 or within 1 to 1e6")));
+                }
+                Ok(())
+            }
+            Self::Horizon(Horizon { lines, far_field_mib, max_anisotropy, .. }) => {
+                within("lines", lines, 2, 64)?;
+                within("far_field_mib", far_field_mib, 1, 4096)?;
+                within("max_anisotropy", max_anisotropy, 1.0, 1e6)
+            }
+            Self::Parallax(Rays { samples }) | Self::Truth(Rays { samples }) => within("samples", samples, 1, 65536),
+        }
+    }
+}
