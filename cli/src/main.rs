@@ -1,8 +1,6 @@
-//! The command-line program: parses the command line, calls one function of `cli`.
+//! The program `basrelief`: all of it is in the library beside it.
 #![forbid(unsafe_code)]
 
-mod cli;
-
 fn main() -> std::process::ExitCode {
-    cli::run()
+    basrelief_cli::run()
 }

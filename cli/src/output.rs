@@ -1,6 +1,6 @@
 //! Where results go: files that appear whole, or stdout.
 
-use super::Refusal;
+use crate::refusal::Refusal;
 use basrelief::frame::{Format, WholeFile, check_writable};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
 /// On an interrupt, removes the file that is being written, so that nothing half-written stays behind, and ends the program.
-pub(super) fn clean_up_on_interrupt() {
+pub(crate) fn clean_up_on_interrupt() {
     let end = || {
         let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
         // It may have no name any more.
@@ -22,59 +22,59 @@ pub(super) fn clean_up_on_interrupt() {
 }
 
 /// Whether a path stands for stdout.
-pub(super) fn is_stdout(path: &Path) -> bool {
+pub(crate) fn is_stdout(path: &Path) -> bool {
     path == Path::new("-")
 }
 
 /// The format of an image at `path`, which can be written: checked before the work.
-pub(super) fn image_format(path: &Path) -> Result<Format, Refusal> {
+pub(crate) fn image_format(path: &Path) -> Result<Format, Refusal> {
     if is_stdout(path) {
         return Ok(Format::Png);
     }
-    let format = Format::of(path).map_err(|e| e.to_string())?;
+    let format = Format::of(path)?;
     check(path)?;
     Ok(format)
 }
 
 /// Checks before the work that a file can be written.
-pub(super) fn check(path: &Path) -> Result<(), Refusal> {
+pub(crate) fn check(path: &Path) -> Result<(), Refusal> {
     if is_stdout(path) {
         return Ok(());
     }
     // The check, too, makes a temporary file.
     let _unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
-    check_writable(path).map_err(|e| e.to_string())
+    Ok(check_writable(path)?)
 }
 
 /// Writes a whole file, or stdout.
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Refusal> {
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Refusal> {
     let name = if is_stdout(path) { "stdout".into() } else { path.display().to_string() };
-    write_by(path, |sink| sink.write_all(bytes).map_err(|e| format!("{name}: cannot be written: {e}")))
+    write_by(path, |sink| sink.write_all(bytes).map_err(|e| format!("{name}: cannot be written: {e}").into()))
 }
 
 /// Writes a whole file, or stdout, as `write` does to its sink.
-pub(super) fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<(), Refusal>) -> Result<(), Refusal> {
+pub(crate) fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<(), Refusal>) -> Result<(), Refusal> {
     if is_stdout(path) {
         let mut stdout = io::stdout().lock();
         write(&mut stdout)?;
-        return stdout.flush().map_err(|e| format!("stdout: cannot be written: {e}"));
+        return stdout.flush().map_err(|e| format!("stdout: cannot be written: {e}").into());
     }
     let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
-    let mut file = WholeFile::create(path).map_err(|e| e.to_string())?;
+    let mut file = WholeFile::create(path)?;
     *unfinished = file.temporary_path().map(Into::into);
     drop(unfinished);
     let written = write(&mut file);
     let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     *unfinished = None;
     written?;
-    file.finish().map_err(|e| e.to_string())
+    Ok(file.finish()?)
 }
 
 /// Prints text to stdout. A pipe that is closed, as by `head`, has read what it wanted.
-pub(super) fn print(text: &[u8]) -> Result<(), Refusal> {
+pub(crate) fn print(text: &[u8]) -> Result<(), Refusal> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text).and_then(|()| stdout.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("stdout: cannot be written: {e}")),
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("stdout: cannot be written: {e}").into()),
         _ => Ok(()),
     }
 }

@@ -1,17 +1,18 @@
 //! What the user sees on stderr while waiting.
 
+use crate::refusal::one_line;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
 /// A line of progress where stderr is a terminal, and messages for the user.
-pub(super) struct Progress {
+pub(crate) struct Progress {
     bar: ProgressBar,
     is_quiet: bool,
 }
 
 impl Progress {
     /// Shows nothing but warnings if `is_quiet`.
-    pub(super) fn new(is_quiet: bool) -> Self {
+    pub(crate) fn new(is_quiet: bool) -> Self {
         let is_shown = !is_quiet && std::io::stderr().is_terminal();
         let bar = if is_shown { ProgressBar::new_spinner() } else { ProgressBar::hidden() };
         if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed}") {
@@ -21,21 +22,21 @@ impl Progress {
     }
 
     /// Shows what is being done.
-    pub(super) fn stage(&self, text: impl Into<String>) {
+    pub(crate) fn stage(&self, text: impl Into<String>) {
         self.bar.set_message(text.into());
         self.bar.tick();
     }
 
     /// Tells the user something, unless quiet.
-    pub(super) fn say(&self, text: &str) {
+    pub(crate) fn say(&self, text: &str) {
         if !self.is_quiet {
-            self.bar.suspend(|| eprintln!("{}", super::one_line(text)));
+            self.bar.suspend(|| eprintln!("{}", one_line(text)));
         }
     }
 
     /// Warns the user, even if quiet.
-    pub(super) fn warn(&self, text: &str) {
-        self.bar.suspend(|| eprintln!("warning: {}", super::one_line(text)));
+    pub(crate) fn warn(&self, text: &str) {
+        self.bar.suspend(|| eprintln!("warning: {}", one_line(text)));
     }
 }
 

@@ -4,11 +4,12 @@ use basrelief::{SIMD_LEVEL, Settings, Stats};
 use serde::Serialize;
 use std::path::Path;
 
-use super::choices::{FILTERS, word};
+use crate::options::choices::{FILTERS, word};
+use crate::refusal::Refusal;
 
 /// One JSON object; of several pictures in a row where `--json` prints one a line. Times are in milliseconds; those of a frame belong to the frame of the middle time.
 #[derive(Serialize)]
-pub(super) struct Report {
+pub(crate) struct Report {
     frame_ms: f64,
     load_ms: f64,
     geometry_ms: f64,
@@ -37,7 +38,7 @@ pub(super) struct Report {
 }
 
 /// Adds what drawing another part of a picture took.
-pub(super) fn add(sum: &mut Stats, part: &Stats) {
+pub(crate) fn add(sum: &mut Stats, part: &Stats) {
     sum.geometry_ms += part.geometry_ms;
     sum.raster_ms += part.raster_ms;
     sum.binning_ms += part.binning_ms;
@@ -54,7 +55,7 @@ pub(super) fn add(sum: &mut Stats, part: &Stats) {
 
 impl Report {
     /// The figures of the frame of the middle time (of an even number, the faster of the middle two).
-    pub(super) fn new(mut frames: Vec<(f64, Stats)>, load_ms: f64, threads: usize, settings: &Settings) -> Self {
+    pub(crate) fn new(mut frames: Vec<(f64, Stats)>, load_ms: f64, threads: usize, settings: &Settings) -> Self {
         frames.sort_by(|a, b| a.0.total_cmp(&b.0));
         let middle = frames.len().saturating_sub(1) / 2;
         let (frame_ms, stats) = frames.into_iter().nth(middle).unwrap_or_default();
@@ -85,19 +86,19 @@ impl Report {
     }
 
     /// The report of the picture in `file`, which may be one frame of many.
-    pub(super) fn of_picture(self, file: &Path, frame: Option<u32>) -> Self {
+    pub(crate) fn of_picture(self, file: &Path, frame: Option<u32>) -> Self {
         Self { file: Some(file.display().to_string()), frame, ..self }
     }
 
     /// A line for people.
-    pub(super) fn line(&self) -> String {
+    pub(crate) fn line(&self) -> String {
         let Self { width, height, filter, frame_ms, load_ms, threads, .. } = self;
         let threads = if *threads == 1 { "1 thread".into() } else { format!("{threads} threads") };
         format!("{width}x{height}, filter {filter}: {frame_ms:.1} ms on {threads}, after {load_ms:.0} ms of loading")
     }
 
     /// The object, on one line.
-    pub(super) fn json(&self) -> Result<Vec<u8>, super::Refusal> {
+    pub(crate) fn json(&self) -> Result<Vec<u8>, Refusal> {
         let mut json = serde_json::to_vec(self).map_err(|e| format!("--stats: {e}"))?;
         json.push(b'\n');
         Ok(json)

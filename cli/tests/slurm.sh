@@ -2,12 +2,12 @@
 # Splits a turntable over a Slurm array of four tasks on two nodes, kills one task on the way, requeues it, and compares every
 # frame with those of one unsplit run, byte for byte.
 #
-#   tests/slurm.sh [PROGRAM]        default: target/release/basrelief
+#   cli/tests/slurm.sh [PROGRAM]        default: target/release/basrelief
 #
 # Starts a cluster of its own in a temporary folder: munged, slurmctld and two slurmd, as root, on this machine. Debian has
 # them in the packages munge, slurmctld, slurmd and slurm-client. Exit code 77: skipped, since they are not here.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 program=$(realpath "${1:-${CARGO_TARGET_DIR:-target}/release/basrelief}")
 num_frames=${NUM_FRAMES:-120}

@@ -1,7 +1,9 @@
 //! `basrelief compare`: how far two images are apart.
 
-use super::args::CompareOptions;
-use super::{Refusal, golden, output, settings};
+use crate::commands::golden;
+use crate::options::compare::CompareOptions;
+use crate::output;
+use crate::refusal::Refusal;
 use basrelief::Error;
 use basrelief::metrics::{self, Difference, Picture};
 use serde::Serialize;
@@ -25,19 +27,19 @@ struct Report {
 }
 
 /// Compares the images that the options name.
-pub(super) fn run(options: &CompareOptions) -> Result<ExitCode, Refusal> {
+pub(crate) fn run(options: &CompareOptions) -> Result<ExitCode, Refusal> {
     let paths = match (&options.golden, &options.b) {
         (Some(folder), _) => return golden::run(options, folder),
         (None, Some(b)) => [&options.a, b],
         (None, None) => return Err("B is missing".into()),
     };
     let format = options.heatmap.as_deref().map(output::image_format).transpose()?;
-    let open = |path| Picture::open_within(path, options.max_pixels).map_err(|e| settings::refusal(&e));
+    let open = |path| Picture::open_within(path, options.max_pixels);
     let (a, b) = (open(paths[0])?, open(paths[1])?);
-    let difference = metrics::compare(&a, &b).map_err(|e| refusal(paths, &e))?;
+    let difference = metrics::compare(&a, &b).map_err(|e| refusal(paths, e))?;
     if let (Some(path), Some(format)) = (&options.heatmap, format) {
-        let map = metrics::heat_map(&a, &b, options.heatmap_max).map_err(|e| refusal(paths, &e))?;
-        output::write(path, &map.encode(format).map_err(|e| e.to_string())?)?;
+        let map = metrics::heat_map(&a, &b, options.heatmap_max).map_err(|e| refusal(paths, e))?;
+        output::write(path, &map.encode(format)?)?;
     }
     let report = Report::new(&a, &difference);
     let text = if options.json { report.json()? } else { report.lines(options) };
@@ -45,12 +47,12 @@ pub(super) fn run(options: &CompareOptions) -> Result<ExitCode, Refusal> {
     Ok(verdict(difference.psnr_db, options.min_psnr))
 }
 
-fn refusal([a, b]: [&PathBuf; 2], error: &Error) -> Refusal {
+fn refusal([a, b]: [&PathBuf; 2], error: Error) -> Refusal {
     let reason = match error {
-        Error::Scene { reason, .. } => reason.clone(),
+        Error::Scene { reason, .. } => reason,
         _ => error.to_string(),
     };
-    format!("{} and {}: {reason}", a.display(), b.display())
+    format!("{} and {}: {reason}", a.display(), b.display()).into()
 }
 
 fn verdict(psnr_db: f64, bound: Option<f64>) -> ExitCode {

@@ -1,8 +1,8 @@
 //! `basrelief compare --golden`: pictures against those of a folder.
 
-use super::args::CompareOptions;
-use super::settings::refusal;
-use super::{Refusal, output};
+use crate::options::compare::CompareOptions;
+use crate::output;
+use crate::refusal::Refusal;
 use basrelief::frame::Format;
 use basrelief::golden::{Thresholds, Verdict, judge_within};
 use serde::Serialize;
@@ -23,19 +23,19 @@ struct Report<'a> {
 }
 
 /// Compares the images that the options name with those of the same names in `folder`.
-pub(super) fn run(options: &CompareOptions, folder: &Path) -> Result<ExitCode, Refusal> {
+pub(crate) fn run(options: &CompareOptions, folder: &Path) -> Result<ExitCode, Refusal> {
     if !folder.is_dir() {
-        return Err(format!("--golden {}: is not a folder", folder.display()));
+        return Err(format!("--golden {}: is not a folder", folder.display()).into());
     }
     let thresholds = Thresholds { tolerance: options.tolerance, share: options.share };
     let mut all_passed = true;
     for (file, golden) in pairs(options, folder)? {
         let verdict = match std::fs::read(&file) {
-            Ok(bytes) => judge_within(&golden, &bytes, thresholds, options.max_pixels).map_err(|e| refusal(&e))?,
+            Ok(bytes) => judge_within(&golden, &bytes, thresholds, options.max_pixels)?,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound && golden.is_file() => {
                 Verdict::Failed("there is no such image to compare".into())
             }
-            Err(e) => return Err(format!("{}: {e}", file.display())),
+            Err(e) => return Err(Refusal::file(&file, e)),
         };
         all_passed &= !matches!(verdict, Verdict::Failed(_));
         let text = if options.json { json(&file, &golden, &verdict)? } else { line(&file, &verdict) };
@@ -60,7 +60,7 @@ fn pairs(options: &CompareOptions, folder: &Path) -> Result<Vec<(PathBuf, PathBu
 }
 
 fn images(folder: &Path) -> Result<Vec<PathBuf>, Refusal> {
-    let refuse = |e: std::io::Error| format!("{}: {e}", folder.display());
+    let refuse = |e: std::io::Error| Refusal::file(folder, e);
     let entries = std::fs::read_dir(folder).map_err(refuse)?;
     let mut names = Vec::new();
     for entry in entries {

@@ -3,8 +3,9 @@
 //! Parts are PNG files that say where they lie. They are opened when the rows reach them and closed after their last
 //! row, so memory holds a row of the picture, and as many files are open as parts lie side by side.
 
-use super::args::JoinOptions;
-use super::{Refusal, output};
+use crate::options::join::JoinOptions;
+use crate::output;
+use crate::refusal::Refusal;
 use basrelief::frame::{Format, Part, PngHead, write_png};
 use basrelief::{Error, Region};
 use std::fs::File;
@@ -22,9 +23,9 @@ struct Piece {
 }
 
 /// Joins the parts that the options name.
-pub(super) fn run(options: &JoinOptions) -> Result<ExitCode, Refusal> {
+pub(crate) fn run(options: &JoinOptions) -> Result<ExitCode, Refusal> {
     if output::image_format(&options.output)? != Format::Png {
-        return Err(format!("{}: the name must end in .png", options.output.display()));
+        return Err(Refusal::file(&options.output, "the name must end in .png"));
     }
     let mut pieces = options.parts.iter().map(|path| Piece::of(path)).collect::<Result<Vec<_>, _>>()?;
     pieces.sort_by_key(|piece| (piece.part.region.y, piece.part.region.x));
@@ -36,8 +37,8 @@ pub(super) fn run(options: &JoinOptions) -> Result<ExitCode, Refusal> {
     output::write_by(&options.output, |sink| {
         let sink = BufWriter::with_capacity(1 << 20, sink);
         write_png(sink, &head, (0..height).map(|y| rows.row(y))).map_err(|e| match e {
-            Error::Scene { reason, .. } => format!("{}: {reason}", options.output.display()),
-            e => e.to_string(),
+            Error::Scene { reason, .. } => Refusal::file(&options.output, reason),
+            e => e.into(),
         })
     })?;
     Ok(ExitCode::SUCCESS)
@@ -50,7 +51,7 @@ fn check(pieces: &[Piece]) -> Result<[u32; 2], Refusal> {
     if let Some(other) = pieces.iter().find(|piece| piece.part.whole != first.part.whole) {
         let [other_width, other_height] = other.part.whole;
         let (a, b) = (first.path.display(), other.path.display());
-        return Err(format!("{a} is a part of {width}x{height} pixels, {b} of {other_width}x{other_height}"));
+        return Err(format!("{a} is a part of {width}x{height} pixels, {b} of {other_width}x{other_height}").into());
     }
     // How far down each column is covered, as runs that end at a column: the next piece must begin there.
     let mut covered: Vec<(u32, u32)> = vec![(width, 0)];
@@ -60,10 +61,10 @@ fn check(pieces: &[Piece]) -> Result<[u32; 2], Refusal> {
         for &(end, down) in &covered {
             let (from, to) = (start.max(x), end.min(x + width));
             if from < to && down > y {
-                return Err(format!("{}: overlaps another part at x {from}, y {y}", path.display()));
+                return Err(Refusal::file(path, format_args!("overlaps another part at x {from}, y {y}")));
             }
             if from < to && down < y {
-                return Err(format!("no part covers x {from}, y {down}"));
+                return Err(format!("no part covers x {from}, y {down}").into());
             }
             if from < to {
                 after.extend([(from, down), (to, y + height), (end, down)]);
@@ -86,7 +87,7 @@ fn check(pieces: &[Piece]) -> Result<[u32; 2], Refusal> {
     let mut start = 0;
     for (end, down) in covered {
         if down < height {
-            return Err(format!("no part covers x {start}, y {down}"));
+            return Err(format!("no part covers x {start}, y {down}").into());
         }
         start = end;
     }
@@ -95,8 +96,8 @@ fn check(pieces: &[Piece]) -> Result<[u32; 2], Refusal> {
 
 impl Piece {
     fn of(path: &Path) -> Result<Self, Refusal> {
-        let refuse = |reason: &str| Err(format!("{}: {reason}", path.display()));
-        let reader = open(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
+        let refuse = |reason: &str| Err(Refusal::file(path, reason));
+        let reader = open(path).map_err(|reason| Refusal::file(path, reason))?;
         let info = reader.info();
         let has_opacity = match (info.color_type, info.bit_depth, info.interlaced) {
             (png::ColorType::Rgb, png::BitDepth::Eight, false) => false,

@@ -1,14 +1,15 @@
 //! `basrelief completions` and `basrelief man`: what clap knows of the command line, for shells and readers.
 
-use super::args::Cli;
-use super::{Refusal, output};
+use crate::options::args::Cli;
+use crate::output;
+use crate::refusal::Refusal;
 use clap::CommandFactory;
 use clap_complete::Shell;
 use std::path::Path;
 use std::process::ExitCode;
 
 /// Prints the completions of a shell.
-pub(super) fn completions(shell: Shell) -> Result<ExitCode, Refusal> {
+pub(crate) fn completions(shell: Shell) -> Result<ExitCode, Refusal> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "basrelief", &mut script);
     output::print(&script)?;
@@ -16,7 +17,7 @@ pub(super) fn completions(shell: Shell) -> Result<ExitCode, Refusal> {
 }
 
 /// Prints the manual page, or writes one for each subcommand into `folder`.
-pub(super) fn man(folder: Option<&Path>) -> Result<ExitCode, Refusal> {
+pub(crate) fn man(folder: Option<&Path>) -> Result<ExitCode, Refusal> {
     let mut command = Cli::command();
     command.build();
     let Some(folder) = folder else {

@@ -1,23 +1,26 @@
 //! `basrelief [render]`: load once, then draw and write picture after picture.
 
-use super::args::RenderOptions;
-use super::frames::Sequence;
-use super::picture::{self, Took, Way};
-use super::progress::Progress;
-use super::settings::refusal;
-use super::stats::Report;
-use super::{Refusal, measured, output, scene_file};
+use crate::commands::measure;
+use crate::options::frames::Sequence;
+use crate::options::render::RenderOptions;
+use crate::options::scene_file;
+use crate::options::threads::thread_pool;
+use crate::output;
+use crate::pictures::picture::{self, Took, Way};
+use crate::progress::Progress;
+use crate::refusal::Refusal;
+use crate::stats::Report;
 use basrelief::{Lighting, Renderer, Settings};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 /// Draws the scene that the options name.
-pub(super) fn run(mut options: RenderOptions) -> Result<ExitCode, Refusal> {
+pub(crate) fn run(mut options: RenderOptions) -> Result<ExitCode, Refusal> {
     // All that can be refused without work is refused before the work.
     scene_file::read_into(&mut options.scene, &mut options.settings)?;
     if let Some(view) = options.view.view {
-        return measured::run(&options, view);
+        return measure::run(&options, view);
     }
     let settings = options.settings.settings(options.scene.has_lights())?;
     let sequence = options.frames.sequence(options.output.as_deref())?;
@@ -53,26 +56,11 @@ fn check(options: &RenderOptions, settings: &Settings, sequence: &Sequence) -> R
     let others = [("--stats", &options.stats), ("--save-scene", &options.save_scene)];
     for (option, path) in others.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))) {
         if path == name {
-            return Err(format!("{option} and --output are both {}", path.display()));
+            return Err(format!("{option} and --output are both {}", path.display()).into());
         }
         output::check(path)?;
     }
     Way::of(settings, output::image_format(name)?, options.repeat.is_some())
-}
-
-/// A pool of `num` threads, or of as many as this process may use.
-pub(super) fn thread_pool(num: u32) -> Result<rayon::ThreadPool, Refusal> {
-    let num = num_threads(num);
-    rayon::ThreadPoolBuilder::new().num_threads(num).build().map_err(|e| format!("--threads {num}: {e}"))
-}
-
-/// How many threads `num` stands for.
-pub(super) fn num_threads(num: u32) -> usize {
-    match num {
-        // Heeds the affinity mask and the quota of a control group, rounded down.
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        _ => num as usize,
-    }
 }
 
 struct Job<'a> {
@@ -121,11 +109,10 @@ impl Job<'_> {
         let camera = loaded.scene.camera;
         let cameras = self.sequence.cameras(camera);
         for (number, _) in self.pictures.iter().filter(|_| self.sequence.is_numbered()) {
-            cameras.camera(*number).validate().map_err(|e| format!("frame {number}: {}", refusal(&e)))?;
+            cameras.camera(*number).validate().map_err(|e| format!("frame {number}: {}", Refusal::from(e)))?;
         }
         progress.stage("building tables");
-        let renderer =
-            Renderer::new(loaded.scene, picture::first_settings(settings, self.way)).map_err(|e| refusal(&e))?;
+        let renderer = Renderer::new(loaded.scene, picture::first_settings(settings, self.way))?;
         if let Some(path) = &options.save_scene {
             output::write(path, scene_file::text(&options.scene, settings, &camera, path)?.as_bytes())?;
         }
@@ -136,7 +123,7 @@ impl Job<'_> {
         let cameras = self.sequence.cameras(renderer.scene().camera);
         let mut all = Vec::new();
         for (i, (number, path)) in self.pictures.iter().enumerate() {
-            renderer.set_camera(cameras.camera(*number)).map_err(|e| refusal(&e))?;
+            renderer.set_camera(cameras.camera(*number))?;
             self.progress.stage(match self.sequence.is_numbered() {
                 true => format!("drawing frame {number} ({} of {})", i + 1, self.pictures.len()),
                 false => "drawing".into(),

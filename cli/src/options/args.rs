@@ -1,11 +1,17 @@
-//! The command line as a whole. The options of frames and scenes stand in `settings` and `scene`.
+//! The command line as a whole. The options of each subcommand stand in a file of its name.
 
-use super::{
-    frames::FramesOptions, inspect::InspectOptions, measured::ViewOptions, scene::SceneOptions,
-    settings::SettingsOptions, study::StudyOptions, values, version,
-};
-use basrelief::metrics::Picture;
-use clap::{Args, Parser, Subcommand};
+use crate::options::compare::CompareOptions;
+use crate::options::inspect::InspectOptions;
+use crate::options::join::JoinOptions;
+use crate::options::render::RenderOptions;
+use crate::options::study::StudyOptions;
+use crate::options::version;
+#[cfg(feature = "viewer")]
+use crate::options::viewer;
+use crate::refusal::Refusal;
+use basrelief::{Scene, Settings};
+use clap::{CommandFactory, Parser, Subcommand};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Draws height-mapped surfaces on the CPU, with the texels that the relief hides left out of the texture filter.
@@ -14,8 +20,9 @@ use std::path::PathBuf;
 /// draws a file.
 #[derive(Parser)]
 #[command(name = "basrelief", version = version::text(), args_conflicts_with_subcommands = true, max_term_width = 120)]
+#[command(args_override_self = true)]
 #[command(after_long_help = EXIT_CODES)]
-pub(crate) struct Cli {
+pub struct Cli {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
     #[command(flatten)]
@@ -52,15 +59,15 @@ pub(crate) enum Command {
     Study(StudyOptions),
     /// Look around a scene in a window
     #[cfg(feature = "viewer")]
-    #[command(after_help = super::view::KEYS)]
-    View(super::view::ViewerOptions),
+    #[command(after_help = viewer::KEYS)]
+    View(viewer::ViewerOptions),
     /// Look around a scene in a window: not part of this build
     #[cfg(not(feature = "viewer"))]
     #[command(hide = true, disable_help_flag = true)]
     View {
         /// Whatever follows
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "...")]
-        rest: Vec<std::ffi::OsString>,
+        rest: Vec<OsString>,
     },
     /// Put the parts of a picture together that --region drew
     ///
@@ -80,86 +87,81 @@ pub(crate) enum Command {
     },
 }
 
-#[derive(Args)]
-pub(crate) struct JoinOptions {
-    /// Parts of one picture, in any order
-    #[arg(value_name = "PART", required = true)]
-    pub(crate) parts: Vec<PathBuf>,
-    /// PNG file to write; - is stdout
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: PathBuf,
+/// How a command line that does not parse ends the program.
+pub enum Ending {
+    /// It is wrong.
+    Refused(Refusal),
+    /// Help or version is asked for.
+    Help(clap::Error),
 }
 
-#[derive(Args)]
-pub(crate) struct RenderOptions {
-    #[command(flatten)]
-    pub(crate) scene: SceneOptions,
-    #[command(flatten)]
-    pub(crate) settings: SettingsOptions,
-    #[command(flatten)]
-    pub(crate) view: ViewOptions,
+impl Cli {
+    /// Takes a command line apart, the program's name first.
+    ///
+    /// # Errors
+    /// Where the command line is wrong, or asks for help.
+    pub fn read(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, Ending> {
+        Self::try_parse_from(arguments)
+            .map_err(|e| if e.use_stderr() { Ending::Refused(usage_line(&e).into()) } else { Ending::Help(e) })
+    }
 
-    #[command(flatten)]
-    pub(crate) frames: FramesOptions,
+    /// All options of pictures, and all words that they take.
+    pub fn words() -> Vec<String> {
+        let command = Self::command();
+        let options = command.get_arguments().filter_map(|option| Some(format!("--{}", option.get_long()?)));
+        let words = command.get_arguments().flat_map(|option| option.get_possible_values());
+        options.chain(words.map(|word| word.get_name().to_owned())).collect()
+    }
 
-    /// Image to write: .png, .jpg, .tga, .tiff, .bmp (8-bit sRGB) or .exr (linear float); - writes PNG to stdout; of many
-    /// frames #### becomes the number [default: basrelief.png, frame_####.png of many frames]
-    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
-    pub(crate) output: Option<PathBuf>,
-    /// Write a scene file (TOML) that draws this picture again: the options, all settings and the camera
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub(crate) save_scene: Option<PathBuf>,
-    /// Draw N frames after one to warm up and report the middle time
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Output")]
-    pub(crate) repeat: Option<u32>,
-    /// Write times and counts as one JSON object to FILE; - is stdout
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub(crate) stats: Option<PathBuf>,
-    /// Print times, counts and file of each picture as a line of JSON
-    #[arg(long, help_heading = "Output")]
-    pub(crate) json: bool,
-    /// Say nothing but warnings and errors
-    #[arg(short, long, help_heading = "Output")]
-    pub(crate) quiet: bool,
-    /// Threads to draw with; 0: as many processors as this process may use
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024), help_heading = "Output")]
-    pub(crate) threads: u32,
+    /// The settings of the picture that is asked for, if one is. Places the camera and the lights of the options in `scene`.
+    ///
+    /// # Errors
+    /// Where a setting is out of its range.
+    pub fn picture(self, scene: &mut Scene) -> Result<Option<Settings>, Refusal> {
+        let Command::Render(options) = self.command.unwrap_or(Command::Render(self.render)) else { return Ok(None) };
+        options.scene.set(scene);
+        options.settings.settings(options.scene.has_lights()).map(Some)
+    }
 }
 
-#[derive(Args)]
-pub(crate) struct CompareOptions {
-    /// An image: PNG, JPEG, TGA, TIFF, BMP, EXR or HDR; with --golden also a folder of images
-    #[arg(value_name = "A")]
-    pub(crate) a: PathBuf,
-    /// An image of the same size
-    #[arg(value_name = "B", required_unless_present = "golden")]
-    pub(crate) b: Option<PathBuf>,
-    /// With --golden, further images or folders
-    #[arg(value_name = "MORE", requires = "golden")]
-    pub(crate) more: Vec<PathBuf>,
-    /// Most pixels of an image; they take 32 bytes each while they are read
-    #[arg(long, value_name = "N", default_value_t = Picture::MAX_PIXELS, value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
-    pub(crate) max_pixels: u64,
-    /// Exit with code 1 if the peak signal-to-noise ratio is below DB decibels
-    #[arg(long, value_name = "DB", value_parser = values::decibels, allow_hyphen_values = true)]
-    pub(crate) min_psnr: Option<f64>,
-    /// Write an image of the errors: black none, then violet, red, orange, pale yellow for --heatmap-max or more
-    #[arg(long, value_name = "FILE")]
-    pub(crate) heatmap: Option<PathBuf>,
-    /// The error that --heatmap shows in its brightest colour; 1 is the whole range of a channel
-    #[arg(long, value_name = "E", default_value = "0.25", value_parser = values::fraction, allow_hyphen_values = true)]
-    pub(crate) heatmap_max: f32,
-    /// Compare each image with that of the same name in DIR; exit with code 1 if one differs. DIR/failed then shows what was
-    /// expected, what was given and the difference; with `BASRELIEF_ACCEPT=1` in the environment what is given becomes golden
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["min_psnr", "heatmap"], help_heading = "Golden images")]
-    pub(crate) golden: Option<PathBuf>,
-    /// A pixel differs if its red, green, blue or opacity is off by more than E of its range, 0 to 1
-    #[arg(long, value_name = "E", default_value = "0", value_parser = values::unit, requires = "golden", help_heading = "Golden images")]
-    pub(crate) tolerance: f32,
-    /// Share of pixels that may differ, 0 to 1
-    #[arg(long, value_name = "S", default_value = "0", value_parser = values::unit, requires = "golden", help_heading = "Golden images")]
-    pub(crate) share: f32,
-    /// Print one JSON object, or one a line for each golden image; the ratio of equal images, which is infinite, is null
-    #[arg(long)]
-    pub(crate) json: bool,
+/// What clap has to say, without its hints on usage and help.
+fn usage_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
+    let lines: Vec<&str> = lines.filter(|line| !line.is_empty() && !line.starts_with("For more information")).collect();
+    lines.join(" ").replace(" tip: ", "; ").trim_start_matches("error: ").to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn refusals_are_one_line() {
+        for args in [&["x", "--filter", "no"][..], &["x", "--what"], &["x", "compare", "a"], &["x", "--size", "0x0"]] {
+            let line = usage_line(&Cli::try_parse_from(args).err().unwrap());
+            assert!(!line.contains('\n') && !line.contains("Usage") && !line.starts_with("error"), "{line}");
+        }
+    }
+
+    #[test]
+    fn the_last_of_an_option_counts() {
+        let line = "x -q --size 8x8 --sun 0,1,0 -f ewa --cull --wrap clamp -q --size 16x9 -f visible --cull=off \
+                    --sun 1,0,0 --wrap mirror --lines 4 --lines 6 --point-light 1,2,3";
+        for start in ["x model.obj", "x render model.obj"] {
+            let line = line.replacen('x', start, 1);
+            let cli = Cli::read(line.split_whitespace().map(Into::into)).ok().unwrap();
+            let mut scene = Scene::default();
+            let settings = cli.picture(&mut scene).unwrap().unwrap();
+            assert_eq!((settings.width, settings.height, settings.lines), (16, 9, 6));
+            assert!(settings.filter == basrelief::Filter::Visible && !settings.cull_back_faces);
+            // Lights add up.
+            assert_eq!(scene.lights.len(), 3);
+        }
+    }
 }

@@ -15,9 +15,8 @@
 //! through the key and its neighbours, at the ends that of the line; where two keys in a row are equal the camera rests, with
 //! slope 0. Only sums and products are used, so that every machine finds the same cameras.
 
-use super::Refusal;
-use super::file_values;
-use super::scene_file;
+use crate::options::{file_values, scene_file};
+use crate::refusal::Refusal;
 use basrelief::Camera;
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
@@ -47,7 +46,7 @@ struct Key {
 type Place = [DVec3; 4];
 
 /// Keyframes in order.
-pub(super) struct CameraPath {
+pub(crate) struct CameraPath {
     keys: Vec<Key>,
 }
 
@@ -55,9 +54,9 @@ pub(super) struct CameraPath {
 const MAX_FRAMES: u32 = 1_000_000;
 
 impl CameraPath {
-    pub(super) fn read(path: &Path) -> Result<Self, Refusal> {
+    pub(crate) fn read(path: &Path) -> Result<Self, Refusal> {
         let PathFile { key: keys } = scene_file::parse(path, &scene_file::read_text(path)?)?;
-        let refuse = |reason: String| Err(format!("{}: {reason}", path.display()));
+        let refuse = |reason: String| Err(Refusal::file(path, reason));
         let [Some(first), Some(last)] = [keys.first(), keys.last()] else { return refuse("has no [[key]]".into()) };
         if let Some(pair) = keys.windows(2).find(|pair| pair[0].frame >= pair[1].frame) {
             return refuse(format!("the key of frame {} comes after that of {}", pair[1].frame, pair[0].frame));
@@ -69,12 +68,12 @@ impl CameraPath {
     }
 
     /// The first frame and the last.
-    pub(super) fn range(&self) -> [u32; 2] {
+    pub(crate) fn range(&self) -> [u32; 2] {
         [self.keys[0].frame, self.keys[self.keys.len() - 1].frame]
     }
 
     /// Where the camera is at the keys, from `start` on.
-    pub(super) fn places(&self, start: &Camera) -> Places {
+    pub(crate) fn places(&self, start: &Camera) -> Places {
         let mut place = [start.eye, start.target, start.up, Vec3::new(start.fov_degrees, 0.0, 0.0)].map(Vec3::as_dvec3);
         let at_keys = self.keys.iter().map(|key| {
             let given = [key.eye, key.target, key.up, key.fov.map(|fov| Vec3::new(fov, 0.0, 0.0))];
@@ -88,7 +87,7 @@ impl CameraPath {
 }
 
 /// Keys with the slopes of the curves through them, per frame.
-pub(super) struct Places {
+pub(crate) struct Places {
     keys: Vec<(f64, Place)>,
     slopes: Vec<Place>,
     near: f32,
@@ -96,7 +95,7 @@ pub(super) struct Places {
 
 impl Places {
     /// The camera of a frame within the path's range.
-    pub(super) fn camera(&self, frame: u32) -> Camera {
+    pub(crate) fn camera(&self, frame: u32) -> Camera {
         let frame = f64::from(frame);
         let end = self.keys.partition_point(|key| key.0 < frame).clamp(1, self.keys.len().max(2) - 1);
         let [eye, target, up, fov] = match self.keys.get(end) {
@@ -142,10 +141,11 @@ fn slope(keys: &[(f64, Place)], i: usize) -> Place {
 mod tests {
     use super::*;
 
-    fn path(text: &str) -> Result<CameraPath, Refusal> {
+    fn path(text: &str) -> Result<CameraPath, String> {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), text).unwrap();
-        CameraPath::read(file.path()).map_err(|e| e.replace(&file.path().display().to_string(), "path.toml"))
+        CameraPath::read(file.path())
+            .map_err(|e| e.to_string().replace(&file.path().display().to_string(), "path.toml"))
     }
 
     const KEYS: &str = "[[key]]\nframe = 1\neye = [0, 1, 4]\n[[key]]\nframe = 11\neye = [3, 1, 4]\nfov = 40\n\

@@ -2,7 +2,7 @@
 //!
 //! Each function reads one value that may be left out. Its error carries no place; the TOML reader adds the line.
 
-use super::values::{self, check};
+use crate::options::values::{self, check};
 use glam::Vec3;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

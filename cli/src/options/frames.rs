@@ -1,9 +1,9 @@
 //! Many frames: which there are, which of them are drawn here, from where, and into which files.
 
-use super::Refusal;
-use super::camera_path::{CameraPath, Places};
-use super::shard::Shard;
-use super::values::digits;
+use crate::options::camera_path::{CameraPath, Places};
+use crate::options::shard::Shard;
+use crate::options::values::digits;
+use crate::refusal::Refusal;
 use basrelief::Camera;
 use clap::Args;
 use glam::{DVec3, Vec3};
@@ -25,7 +25,7 @@ pub(crate) struct FramesOptions {
     frames: Option<FrameList>,
     /// Leave out pictures whose file is there
     #[arg(long)]
-    pub(super) skip_existing: bool,
+    pub(crate) skip_existing: bool,
     /// Draw only the I-th of every N frames [default: as the Slurm array says that this task is in]
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
@@ -66,18 +66,18 @@ enum Motion {
 }
 
 /// The pictures that this process draws.
-pub(super) struct Sequence {
+pub(crate) struct Sequence {
     motion: Motion,
     /// Numbers of the frames; one without meaning for a still picture.
     numbers: Vec<u32>,
     output: PathBuf,
     /// How many of how many frames these are, and why.
-    pub(super) remark: Option<String>,
+    pub(crate) remark: Option<String>,
 }
 
 impl FramesOptions {
     /// The pictures that the options ask for; `output` is the file, or the pattern of file names.
-    pub(super) fn sequence(&self, output: Option<&Path>) -> Result<Sequence, Refusal> {
+    pub(crate) fn sequence(&self, output: Option<&Path>) -> Result<Sequence, Refusal> {
         let motion = match (&self.turntable, &self.camera_path) {
             (Some(num), _) => Motion::Turntable(*num),
             (None, Some(path)) => Motion::Path(CameraPath::read(path)?),
@@ -85,7 +85,7 @@ impl FramesOptions {
         };
         let output = output.unwrap_or(Path::new("frame_####.png"));
         if !file_name(output).contains('#') {
-            return Err(format!("--output {}: many frames need #### for the frame's number", output.display()));
+            return Err(format!("--output {}: many frames need #### for the frame's number", output.display()).into());
         }
         let [first, last] = match &motion {
             Motion::Path(path) => path.range(),
@@ -111,7 +111,7 @@ impl FramesOptions {
             ("--shards", self.shards.is_some()),
         ];
         if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
-            return Err(format!("{option}: needs many frames, from --turntable or --camera-path"));
+            return Err(format!("{option}: needs many frames, from --turntable or --camera-path").into());
         }
         let output = output.unwrap_or(Path::new("basrelief.png")).into();
         Ok(Sequence { motion: Motion::Still, numbers: vec![1], output, remark: None })
@@ -120,17 +120,17 @@ impl FramesOptions {
 
 impl Sequence {
     /// Whether there are frames with numbers.
-    pub(super) fn is_numbered(&self) -> bool {
+    pub(crate) fn is_numbered(&self) -> bool {
         !matches!(self.motion, Motion::Still)
     }
 
     /// Numbers and files of the pictures.
-    pub(super) fn pictures(&self) -> impl Iterator<Item = (u32, PathBuf)> {
+    pub(crate) fn pictures(&self) -> impl Iterator<Item = (u32, PathBuf)> {
         self.numbers.iter().map(|&number| (number, self.file(number)))
     }
 
     /// The pattern of the files' names.
-    pub(super) fn output(&self) -> &Path {
+    pub(crate) fn output(&self) -> &Path {
         &self.output
     }
 
@@ -143,7 +143,7 @@ impl Sequence {
     }
 
     /// The cameras of the frames, from that of the scene.
-    pub(super) fn cameras(&self, start: Camera) -> Cameras {
+    pub(crate) fn cameras(&self, start: Camera) -> Cameras {
         match &self.motion {
             Motion::Still => Cameras::Still(start),
             Motion::Turntable(num) => Cameras::Turntable(start, *num),
@@ -165,14 +165,14 @@ fn numbered(name: &str, number: u32) -> String {
 }
 
 /// Where the camera is in each frame.
-pub(super) enum Cameras {
+pub(crate) enum Cameras {
     Still(Camera),
     Turntable(Camera, u32),
     Path(Places),
 }
 
 impl Cameras {
-    pub(super) fn camera(&self, number: u32) -> Camera {
+    pub(crate) fn camera(&self, number: u32) -> Camera {
         match self {
             Self::Still(camera) => *camera,
             Self::Turntable(camera, num) => turned(camera, number - 1, *num),

@@ -2,11 +2,11 @@
 //!
 //! The tables of a scene file hold the same options under the same names: see `scene_file`.
 
-use super::choices::{self, ON_OFF, one_of};
-use super::file_values::{self, PointLight, Spelt, Sun};
-use super::progress::Progress;
-use super::settings::refusal;
-use super::{Refusal, values};
+use crate::options::choices::{self, ON_OFF, one_of};
+use crate::options::file_values::{self, PointLight, Spelt, Sun};
+use crate::options::values;
+use crate::progress::Progress;
+use crate::refusal::Refusal;
 use basrelief::scene::{self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY};
 use basrelief::texture::Wrap;
 use basrelief::{Camera, Light, Scene};
@@ -21,18 +21,18 @@ pub(crate) struct SceneOptions {
     /// What to draw: an OBJ file with its MTL files and images, or a scene file (TOML, see --save-scene), which other
     /// options override; without one, a built-in scene
     #[arg(value_name = "SCENE")]
-    pub(super) model: Option<PathBuf>,
+    pub(crate) model: Option<PathBuf>,
     #[command(flatten)]
-    pub(super) all_materials: MapOptions,
+    pub(crate) all_materials: MapOptions,
     /// Options of single materials by name; only scene files give them.
     #[arg(skip)]
-    pub(super) material: BTreeMap<String, MapOptions>,
+    pub(crate) material: BTreeMap<String, MapOptions>,
     #[command(flatten)]
-    pub(super) limits: LimitOptions,
+    pub(crate) limits: LimitOptions,
     #[command(flatten)]
-    pub(super) camera: CameraOptions,
+    pub(crate) camera: CameraOptions,
     #[command(flatten)]
-    pub(super) light: LightOptions,
+    pub(crate) light: LightOptions,
 }
 
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -41,13 +41,13 @@ pub(crate) struct SceneOptions {
 pub(crate) struct MapOptions {
     /// Colour image
     #[arg(long, value_name = "FILE", requires = "model")]
-    pub(super) albedo: Option<PathBuf>,
+    pub(crate) albedo: Option<PathBuf>,
     /// Height image
     #[arg(long, value_name = "FILE", requires = "model")]
-    pub(super) height: Option<PathBuf>,
+    pub(crate) height: Option<PathBuf>,
     /// Normal map
     #[arg(long, value_name = "FILE", requires = "model")]
-    pub(super) normal: Option<PathBuf>,
+    pub(crate) normal: Option<PathBuf>,
     /// Which end of the height images is high [default: white-high]
     #[arg(long, value_name = "END", value_parser = one_of(choices::HEIGHT_SENSES), requires = "model")]
     #[serde(with = "choices")]
@@ -157,10 +157,10 @@ impl SceneOptions {
     }
 
     /// Reads or makes the scene and sets what the options say.
-    pub(super) fn load(&self, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
+    pub(crate) fn load(&self, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
         let report = |stage: LoadStage| progress.stage(stage.to_string());
         let mut loaded = match &self.model {
-            Some(obj) => scene::load_reporting(obj, &self.load_options(is_lit), &report).map_err(|e| refusal(&e))?,
+            Some(obj) => scene::load_reporting(obj, &self.load_options(is_lit), &report)?,
             None if self.has_maps() => return Err("materials are given, but no model (OBJ file) that has them".into()),
             None => built_in(),
         };
@@ -275,7 +275,7 @@ mod tests {
 
     fn parse(line: &str) -> Result<SceneOptions, Refusal> {
         let only = Only::try_parse_from(std::iter::once("x").chain(line.split_whitespace()));
-        only.map(|only| only.options).map_err(|e| e.to_string())
+        Ok(only.map_err(|e| e.to_string())?.options)
     }
 
     #[test]
@@ -313,7 +313,7 @@ mod tests {
     #[test]
     fn options_of_files_need_a_file() {
         for line in ["--height a.png", "--wrap clamp", "--allow-outside", "--relief-depth 0.1", "--max-textures 3"] {
-            assert!(parse(line).err().unwrap().contains("SCENE"), "{line}");
+            assert!(parse(line).err().unwrap().to_string().contains("SCENE"), "{line}");
             assert!(parse(&format!("a.obj {line}")).is_ok(), "{line}");
         }
         assert!(parse("a.obj --relief-depth 1.5").is_err() && parse("a.obj --relief-depth nan").is_err());

@@ -22,9 +22,9 @@
 //! Keys are the names of options, tables are the headings of the help. Files are named relative to the scene file. An option
 //! on the command line overrides the key.
 
-use super::Refusal;
-use super::scene::{CameraOptions, LightOptions, LimitOptions, MapOptions, SceneOptions};
-use super::settings::{FilterOptions, FrameOptions, SettingsOptions, check, option_of};
+use crate::options::scene::{CameraOptions, LightOptions, LimitOptions, MapOptions, SceneOptions};
+use crate::options::settings::{FilterOptions, FrameOptions, SettingsOptions, check};
+use crate::refusal::{Refusal, option_of};
 use basrelief::{Camera, Error, Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -46,23 +46,23 @@ struct SceneFile {
 }
 
 /// Puts what the scene file says, if `scene` names one, under what the options say.
-pub(super) fn read_into(scene: &mut SceneOptions, settings: &mut SettingsOptions) -> Result<(), Refusal> {
+pub(crate) fn read_into(scene: &mut SceneOptions, settings: &mut SettingsOptions) -> Result<(), Refusal> {
     let is_scene_file = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
     let Some(path) = scene.model.take_if(|path| is_scene_file(path)) else { return Ok(()) };
     let over = SceneFile::of(scene, settings).table()?;
     let mut table = SceneFile::read(&path)?.table()?;
     overlay(&mut table, over);
-    let merged: SceneFile = table.try_into().map_err(|e| format!("{}: {e}", path.display()))?;
+    let merged: SceneFile = table.try_into().map_err(|e| Refusal::file(&path, e))?;
     (*scene, *settings) = merged.options();
     Ok(())
 }
 
 /// A scene file that draws the same picture again: what the options say, and all of the camera and settings.
-pub(super) fn text(scene: &SceneOptions, settings: &Settings, camera: &Camera, path: &Path) -> Result<String, Refusal> {
+pub(crate) fn text(scene: &SceneOptions, settings: &Settings, camera: &Camera, path: &Path) -> Result<String, Refusal> {
     let mut file = SceneFile::of(scene, &settings.into());
     file.camera = camera.into();
     let folder = folder_of(path);
-    let root = std::fs::canonicalize(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let root = std::fs::canonicalize(folder).map_err(|e| Refusal::file(folder, e))?;
     file.each_path(|path| {
         if let Ok(real) = std::fs::canonicalize(&*path) {
             *path = real.strip_prefix(&root).map_or(real.clone(), Into::into);
@@ -71,7 +71,7 @@ pub(super) fn text(scene: &SceneOptions, settings: &Settings, camera: &Camera, p
     let mut table = file.table()?;
     table.retain(|_, value| value.as_table().is_none_or(|table| !table.is_empty()));
     table.iter_mut().for_each(|(_, value)| shorten(value));
-    let text = toml::to_string(&table).map_err(|e| format!("{}: {e}", path.display()))?;
+    let text = toml::to_string(&table).map_err(|e| Refusal::file(path, e))?;
     Ok(format!(
         "# basrelief {}: `basrelief FILE.toml -o picture.png` draws it again.\n{text}",
         env!("CARGO_PKG_VERSION")
@@ -117,7 +117,7 @@ impl SceneFile {
     }
 
     fn table(&self) -> Result<Table, Refusal> {
-        Table::try_from(self).map_err(|e| format!("scene file: {e}"))
+        Table::try_from(self).map_err(|e| format!("scene file: {e}").into())
     }
 
     /// Reads a file whose every value is of its type and within its range.
@@ -141,19 +141,18 @@ impl SceneFile {
 }
 
 /// The text of a file of at most 16 MiB.
-pub(super) fn read_text(path: &Path) -> Result<String, Refusal> {
-    let refuse = |reason: &dyn std::fmt::Display| format!("{}: {reason}", path.display());
+pub(crate) fn read_text(path: &Path) -> Result<String, Refusal> {
     match std::fs::metadata(path) {
-        Ok(found) if !found.is_file() => Err(refuse(&"is not a file")),
-        Ok(found) if found.len() > 1 << 24 => Err(refuse(&"is larger than 16 MiB")),
-        Ok(_) => std::fs::read_to_string(path).map_err(|e| refuse(&e)),
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Err(refuse(&"no such file")),
-        Err(e) => Err(refuse(&e)),
+        Ok(found) if !found.is_file() => Err(Refusal::file(path, "is not a file")),
+        Ok(found) if found.len() > 1 << 24 => Err(Refusal::file(path, "is larger than 16 MiB")),
+        Ok(_) => std::fs::read_to_string(path).map_err(|e| Refusal::file(path, e)),
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Err(Refusal::file(path, "no such file")),
+        Err(e) => Err(Refusal::file(path, e)),
     }
 }
 
 /// Reads TOML; a refusal names the file, the line and the key.
-pub(super) fn parse<T: for<'de> Deserialize<'de>>(path: &Path, text: &str) -> Result<T, Refusal> {
+pub(crate) fn parse<T: for<'de> Deserialize<'de>>(path: &Path, text: &str) -> Result<T, Refusal> {
     toml::from_str(text).map_err(|error| {
         let line = error.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
         let message = error.message().lines().collect::<Vec<_>>().join("; ");
@@ -168,8 +167,8 @@ pub(super) fn parse<T: for<'de> Deserialize<'de>>(path: &Path, text: &str) -> Re
 /// `FILE:LINE: reason`.
 fn at(path: &Path, line: Option<usize>, reason: &str) -> Refusal {
     match line {
-        Some(line) => format!("{}:{line}: {reason}", path.display()),
-        None => format!("{}: {reason}", path.display()),
+        Some(line) => format!("{}:{line}: {reason}", path.display()).into(),
+        None => Refusal::file(path, reason),
     }
 }
 

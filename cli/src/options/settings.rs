@@ -2,19 +2,20 @@
 //!
 //! The tables `[frame]` and `[filter]` of a scene file hold the same options under the same names.
 
-use super::choices::{self, ON_OFF, one_of};
-use super::file_values::Spelt;
-use super::{Refusal, values};
-use basrelief::{Derivatives, Error, Filter, Formulas, Lighting, Region, Settings, Visibility};
+use crate::options::choices::{self, ON_OFF, one_of};
+use crate::options::file_values::Spelt;
+use crate::options::values;
+use crate::refusal::Refusal;
+use basrelief::{Derivatives, Filter, Formulas, Lighting, Region, Settings, Visibility};
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct SettingsOptions {
     #[command(flatten)]
-    pub(super) frame: FrameOptions,
+    pub(crate) frame: FrameOptions,
     #[command(flatten)]
-    pub(super) filter: FilterOptions,
+    pub(crate) filter: FilterOptions,
 }
 
 #[derive(Args, Clone, Debug, Default, Serialize, Deserialize)]
@@ -111,12 +112,12 @@ impl SettingsOptions {
     /// The settings; `has_lights` says whether the options name a light.
     pub(crate) fn settings(&self, has_lights: bool) -> Result<Settings, Refusal> {
         let settings = self.unchecked(has_lights);
-        check(&settings).map_err(|e| refusal(&e))?;
+        check(&settings)?;
         Ok(settings)
     }
 
     /// The settings, whose numbers may be out of their ranges.
-    pub(super) fn unchecked(&self, has_lights: bool) -> Settings {
+    pub(crate) fn unchecked(&self, has_lights: bool) -> Settings {
         let Self { frame, filter } = self;
         let default = Settings::default();
         let [width, height] = frame.size.as_ref().map_or([default.width, default.height], |size| size.value);
@@ -182,40 +183,11 @@ impl From<&Settings> for SettingsOptions {
 }
 
 /// Checks all but the number of pixels: a picture may be larger than a frame, and is then drawn part by part.
-pub(super) fn check(settings: &Settings) -> basrelief::Result<()> {
+pub(crate) fn check(settings: &Settings) -> basrelief::Result<()> {
     let Region { x, y, .. } = settings.drawn();
     let is_within = settings.drawn().is_within(settings.width, settings.height);
     let pixel = Region { x, y, width: 1, height: 1 };
     Settings { region: if is_within { Some(pixel) } else { settings.region }, ..settings.clone() }.validate()
-}
-
-/// What the library refuses, in the words of the command line.
-pub(crate) fn refusal(error: &Error) -> Refusal {
-    match error {
-        Error::Setting { name, reason } => format!("{}: {reason}", option_of(name)),
-        Error::Scene { part, reason } if part == "camera" => {
-            format!("the camera (--eye, --target, --up, --fov, --near): {reason}")
-        }
-        _ => with_options(error.to_string()),
-    }
-}
-
-/// Fields of the load options that messages about files name.
-const LIMITS: &[&str] = &["max_image_side", "max_image_mib", "max_triangles", "max_textures", "max_pixels"];
-
-fn with_options(text: String) -> Refusal {
-    LIMITS.iter().fold(text, |text, field| text.replace(field, &option_of(field)))
-}
-
-/// The option that sets a field of [`Settings`] or of the load options.
-pub(super) fn option_of(field: &str) -> String {
-    match field {
-        "width" | "height" => "--size".into(),
-        "visibility" => "--visible".into(),
-        "cull_back_faces" => "--cull".into(),
-        "tile_size" => "--tile".into(),
-        _ => format!("--{}", field.replace('_', "-")),
-    }
 }
 
 #[cfg(test)]
@@ -312,7 +284,7 @@ mod tests {
             ("--size 1x0", "--size"),
             ("--size 8x8 --region 0,0,9,1", "--region"),
         ] {
-            let text = parse(line).unwrap_err();
+            let text = parse(line).unwrap_err().to_string();
             assert!(text.contains(option), "{line}: {text}");
         }
     }

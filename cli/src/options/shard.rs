@@ -1,11 +1,11 @@
 //! Which of many frames this process draws: every n-th of them, by options or by what a cluster says of the task.
 
-use super::Refusal;
-use super::values::digits;
+use crate::options::values::digits;
+use crate::refusal::Refusal;
 
 /// One of several processes that share the frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Shard {
+pub(crate) struct Shard {
     /// From 0.
     index: u32,
     count: u32,
@@ -13,7 +13,7 @@ pub(super) struct Shard {
 
 impl Shard {
     /// From `2/4`, the second of four.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let sides = text.split_once('/').map(|(i, n)| (digits(i), digits(n)));
         match sides {
             Some((Some(i), Some(count))) if (1..=count).contains(&i) => Ok(Self { index: i - 1, count }),
@@ -23,7 +23,7 @@ impl Shard {
 
     /// What the environment says, read by `get`: that of a Kubernetes Indexed Job where `shards` gives its completions,
     /// else that of a Slurm array; with the cluster's name.
-    pub(super) fn from_environment(
+    pub(crate) fn from_environment(
         shards: Option<u32>,
         get: impl Fn(&str) -> Option<String>,
     ) -> Result<Option<(Self, &'static str)>, Refusal> {
@@ -59,12 +59,13 @@ impl Shard {
             }
             _ => Err(format!(
                 "the Slurm array of {count} tasks from {min} has gaps: --shard I/N says which shard this is"
-            )),
+            )
+            .into()),
         }
     }
 
     /// Those of `items` that are this shard's.
-    pub(super) fn pick<T>(self, items: Vec<T>) -> Vec<T> {
+    pub(crate) fn pick<T>(self, items: Vec<T>) -> Vec<T> {
         items.into_iter().skip(self.index as usize).step_by(self.count as usize).collect()
     }
 }
@@ -127,7 +128,7 @@ mod tests {
             (None, "SLURM_ARRAY_TASK_ID=one"),
             (None, gaps.as_str()),
         ] {
-            let refusal = environment(shards, variables).unwrap_err();
+            let refusal = environment(shards, variables).unwrap_err().to_string();
             assert!(refusal.contains("--shard") || refusal.contains("is not a number"), "{refusal}");
         }
     }

@@ -1,8 +1,8 @@
 //! One picture: drawn and written whole, or band by band where it is large.
 
-use super::progress::Progress;
-use super::settings::refusal;
-use super::{Refusal, output, stats};
+use crate::progress::Progress;
+use crate::refusal::Refusal;
+use crate::{output, stats};
 use basrelief::frame::{Format, Part, Pixel, PngHead, write_png};
 use basrelief::{Frame, Region, Renderer, Settings, Stats};
 use std::io::BufWriter;
@@ -17,10 +17,10 @@ const BAND: u32 = 1 << 22;
 const MAX_WHOLE: u64 = 1 << 28;
 
 /// What drawing took, in milliseconds and in all.
-pub(super) type Took = (f64, Stats);
+pub(crate) type Took = (f64, Stats);
 
 /// The settings that the renderer of a picture is made with: of one that is drawn in bands, those of the first.
-pub(super) fn first_settings(settings: &Settings, way: Way) -> Settings {
+pub(crate) fn first_settings(settings: &Settings, way: Way) -> Settings {
     let Region { width, height, .. } = settings.drawn();
     let first = Region { height: band_height(width).min(height), ..settings.drawn() };
     Settings { region: if way == Way::Bands { Some(first) } else { settings.region }, ..settings.clone() }
@@ -33,7 +33,7 @@ fn band_height(width: u32) -> u32 {
 
 /// How a picture is drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Way {
+pub(crate) enum Way {
     /// In memory, in any format.
     Whole(Format),
     /// In bands, each written before the next is drawn, as PNG.
@@ -45,7 +45,7 @@ impl Way {
     ///
     /// # Errors
     /// Says so where the picture is too large for its format, or to be drawn more than once.
-    pub(super) fn of(settings: &Settings, format: Format, is_repeated: bool) -> Result<Self, Refusal> {
+    pub(crate) fn of(settings: &Settings, format: Format, is_repeated: bool) -> Result<Self, Refusal> {
         let Region { width, height, .. } = settings.drawn();
         let num_pixels = u64::from(width) * u64::from(height);
         let in_bands = format == Format::Png && !is_repeated;
@@ -53,7 +53,8 @@ impl Way {
             num if num > LARGE && in_bands => Ok(Self::Bands),
             num if num > MAX_WHOLE => Err(format!(
                 "--size: {width}x{height} is more than {MAX_WHOLE} pixels: only .png without --repeat can hold that"
-            )),
+            )
+            .into()),
             _ => Ok(Self::Whole(format)),
         }
     }
@@ -61,7 +62,7 @@ impl Way {
 
 /// Draws the picture of `settings`, with which the renderer was made, into the file `path`: once, or once to warm up and then
 /// as often as it is to be measured.
-pub(super) fn draw(
+pub(crate) fn draw(
     renderer: &mut Renderer,
     settings: &Settings,
     path: &Path,
@@ -95,7 +96,7 @@ fn draw_whole<P: Pixel>(
             took.push(draw_timed(renderer, &mut frame));
         }
     }
-    let bytes = frame.encode_part(format, part(settings)).map_err(|e| refusal(&e))?;
+    let bytes = frame.encode_part(format, part(settings))?;
     Ok((took, bytes))
 }
 
@@ -130,7 +131,7 @@ fn draw_bands(renderer: &mut Renderer, settings: &Settings, path: &Path, progres
     });
     output::write_by(path, |sink| {
         let sink = BufWriter::with_capacity(1 << 20, sink);
-        write_png(sink, &head, bands).map_err(|e| format!("{}: {}", path.display(), refusal(&e)))
+        write_png(sink, &head, bands).map_err(|e| Refusal::file(path, Refusal::from(e)))
     })?;
     Ok(took)
 }
@@ -153,7 +154,7 @@ mod tests {
         assert!(way(4097, 4096, Format::Png, false) == Ok(Way::Bands));
         assert!(way(32768, 32768, Format::Png, false) == Ok(Way::Bands));
         assert!(way(8192, 8192, Format::Exr, false) == Ok(Way::Whole(Format::Exr)));
-        assert!(way(32768, 32768, Format::Exr, false).is_err_and(|text| text.contains("--size")));
+        assert!(way(32768, 32768, Format::Exr, false).is_err_and(|refusal| refusal.to_string().contains("--size")));
         assert!(way(32768, 32768, Format::Png, true).is_err());
         let region = Some(Region { x: 9, y: 9, width: 90, height: 90 });
         let settings = Settings { width: 32768, height: 32768, region, ..Settings::default() };

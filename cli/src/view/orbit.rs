@@ -11,7 +11,7 @@ const FARTHEST: f32 = 1e3;
 
 /// A camera as its place on a sphere.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Orbit {
+pub(crate) struct Orbit {
     camera: Camera,
     /// The vertical, and the two directions that angles are measured from.
     axes: [Vec3; 3],
@@ -24,7 +24,7 @@ pub(super) struct Orbit {
 
 impl Orbit {
     /// Begins where a valid camera is.
-    pub(super) fn new(camera: Camera) -> Self {
+    pub(crate) fn new(camera: Camera) -> Self {
         let up = camera.up.normalize();
         let from_target = camera.eye - camera.target;
         let level = (from_target - up * from_target.dot(up)).normalize_or(up.any_orthonormal_vector());
@@ -34,7 +34,7 @@ impl Orbit {
     }
 
     /// Where the eye is now.
-    pub(super) fn camera(&self) -> Camera {
+    pub(crate) fn camera(&self) -> Camera {
         let [up, east, north] = self.axes;
         let level = east * self.yaw.cos() + north * self.yaw.sin();
         let eye = self.camera.target + (level * self.pitch.cos() + up * self.pitch.sin()) * self.distance;
@@ -44,13 +44,13 @@ impl Orbit {
     }
 
     /// Turns by radians around the vertical and up.
-    pub(super) fn turn(&mut self, yaw: f32, pitch: f32) {
+    pub(crate) fn turn(&mut self, yaw: f32, pitch: f32) {
         self.yaw = (self.yaw + yaw) % std::f32::consts::TAU;
         self.pitch = (self.pitch + pitch).clamp(-STEEPEST, STEEPEST);
     }
 
     /// Moves the place in the middle by parts of the picture's height, to the right and up.
-    pub(super) fn pan(&mut self, right: f32, up: f32) {
+    pub(crate) fn pan(&mut self, right: f32, up: f32) {
         let camera = self.camera();
         let [x, y, _] = camera.axes();
         let height = 2.0 * self.distance * (camera.fov_degrees.to_radians() * 0.5).tan();
@@ -58,7 +58,7 @@ impl Orbit {
     }
 
     /// Goes nearer by steps; negative ones go away.
-    pub(super) fn zoom(&mut self, steps: f32) {
+    pub(crate) fn zoom(&mut self, steps: f32) {
         let factor = (-0.12 * steps).exp();
         let [least, most] = [self.first_distance / FARTHEST, self.first_distance * FARTHEST];
         self.distance = (self.distance * factor).clamp(least, most);

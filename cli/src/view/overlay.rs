@@ -1,7 +1,7 @@
 //! What lies above the frames in the window.
 
-use super::super::draw::{CELL, Canvas, Rgba, Size};
-use super::super::inspect;
+use crate::pictures::draw::{CELL, Canvas, Rgba, Size};
+use crate::pictures::inspection::page::draw_small;
 use basrelief::Frame;
 use basrelief::inspect::Inspection;
 
@@ -9,7 +9,7 @@ const SHADE: Rgba = [16, 18, 22, 215];
 const PAPER: Rgba = [245, 245, 243, 255];
 
 /// One frame, or the two halves of one side by side, stretched to the window.
-pub(super) fn frames(frames: &[Frame], [width, height]: [u32; 2]) -> Canvas {
+pub(crate) fn frames(frames: &[Frame], [width, height]: [u32; 2]) -> Canvas {
     let mut canvas = Canvas::new(width, height, [24, 26, 30, 255]);
     let pictures: Vec<_> = frames.iter().map(|frame| (frame, frame.to_rgb8())).collect();
     let Some((left, _)) = pictures.first() else { return canvas };
@@ -33,7 +33,7 @@ pub(super) fn frames(frames: &[Frame], [width, height]: [u32; 2]) -> Canvas {
 }
 
 /// The names of the filters, and what drawing took.
-pub(super) fn status(canvas: &mut Canvas, names: &[&str], timing: &str) {
+pub(crate) fn status(canvas: &mut Canvas, names: &[&str], timing: &str) {
     let width = canvas.size()[0] as f32;
     canvas.rect([0.0, 0.0, width, CELL[1] + 6.0], SHADE);
     canvas.text([6.0, 3.0], names[0], Size::Bold, PAPER);
@@ -52,7 +52,7 @@ pub(super) fn status(canvas: &mut Canvas, names: &[&str], timing: &str) {
 }
 
 /// Lines of text in the lower part.
-pub(super) fn lines(canvas: &mut Canvas, text: &str) {
+pub(crate) fn lines(canvas: &mut Canvas, text: &str) {
     let [width, height] = canvas.size().map(|side| side as f32);
     let columns = ((width - 20.0) / CELL[0]).max(1.0) as usize;
     let letters = |line: &str| line.chars().collect::<Vec<_>>();
@@ -68,12 +68,12 @@ pub(super) fn lines(canvas: &mut Canvas, text: &str) {
 }
 
 /// What a pixel sees, made to fit beside the picture.
-pub(super) fn inspector(seen: &Inspection, [width, height]: [u32; 2]) -> Canvas {
-    inspect::draw_small(seen, [(width / 2).clamp(160, 620), height.saturating_sub(CELL[1] as u32 + 6).max(120)])
+pub(crate) fn inspector(seen: &Inspection, [width, height]: [u32; 2]) -> Canvas {
+    draw_small(seen, [(width / 2).clamp(160, 620), height.saturating_sub(CELL[1] as u32 + 6).max(120)])
 }
 
 /// Lays the inspector on the right side.
-pub(super) fn beside(canvas: &mut Canvas, inspector: &Canvas) {
+pub(crate) fn beside(canvas: &mut Canvas, inspector: &Canvas) {
     let [width, height] = canvas.size().map(|side| side as i32);
     let [w, h] = inspector.size().map(|side| side as i32);
     canvas.picture([width - w, height - h], inspector);

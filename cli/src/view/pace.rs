@@ -8,14 +8,14 @@ const COARSEST: u32 = 6;
 
 /// Chooses the size of pixels from the time that frames took.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pace {
+pub(crate) struct Pace {
     /// What a frame of full size takes, in milliseconds; 0 while it is not known.
     full_ms: f64,
 }
 
 impl Pace {
     /// Learns from a frame whose pixels were `scale` screen pixels wide.
-    pub(super) fn learn(&mut self, scale: u32, ms: f64) {
+    pub(crate) fn learn(&mut self, scale: u32, ms: f64) {
         let full_ms = ms * f64::from(scale * scale);
         // A frame costs more than its pixels: trust those near full size most.
         let share = if self.full_ms == 0.0 { 1.0 } else { 0.4 };
@@ -23,12 +23,12 @@ impl Pace {
     }
 
     /// Forgets: another filter takes another time.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.full_ms = 0.0;
     }
 
     /// How wide pixels are while moving: the finest that are drawn in time.
-    pub(super) fn moving_scale(&self) -> u32 {
+    pub(crate) fn moving_scale(&self) -> u32 {
         if self.full_ms == 0.0 {
             return 2;
         }

@@ -1,11 +1,12 @@
 //! What the viewer shows and how keys and mouse change it. Knows nothing of windows.
 
-use super::super::choices::{FILTERS, word};
-use super::super::draw::Canvas;
-use super::orbit::Orbit;
-use super::overlay;
-use super::pace::Pace;
-use super::worker::{Answer, Wish};
+use crate::options::choices::{FILTERS, word};
+use crate::options::viewer::KEYS;
+use crate::pictures::draw::Canvas;
+use crate::view::orbit::Orbit;
+use crate::view::overlay;
+use crate::view::pace::Pace;
+use crate::view::worker::{Answer, Wish};
 use basrelief::inspect;
 use basrelief::scene::{self, LoadOptions};
 use basrelief::{Filter, Frame, Lighting, Region, Scene, Settings};
@@ -16,7 +17,7 @@ use std::time::{Duration, Instant};
 const STILL: Duration = Duration::from_millis(150);
 
 /// The viewer.
-pub(super) struct Viewer {
+pub(crate) struct Viewer {
     scene: Scene,
     settings: Settings,
     path: Option<PathBuf>,
@@ -43,7 +44,7 @@ pub(super) struct Viewer {
 
 /// What a key or button means.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Act {
+pub(crate) enum Act {
     /// Around the middle, in radians: sideways and up.
     Turn(f32, f32),
     /// Parts of the window's height: right and up.
@@ -64,7 +65,7 @@ pub(super) enum Act {
 }
 
 impl Viewer {
-    pub(super) fn new(scene: Scene, settings: Settings, path: Option<PathBuf>, load_options: LoadOptions) -> Self {
+    pub(crate) fn new(scene: Scene, settings: Settings, path: Option<PathBuf>, load_options: LoadOptions) -> Self {
         let orbit = Orbit::new(scene.camera);
         Self {
             filters: [settings.filter, Filter::Ewa],
@@ -89,37 +90,37 @@ impl Viewer {
         }
     }
 
-    pub(super) fn split_with(&mut self, filter: Option<Filter>) {
+    pub(crate) fn split_with(&mut self, filter: Option<Filter>) {
         self.is_split = filter.is_some();
         self.filters[1] = filter.unwrap_or(self.filters[1]);
     }
 
-    pub(super) fn keep_full_size(&mut self, is_full_size: bool) {
+    pub(crate) fn keep_full_size(&mut self, is_full_size: bool) {
         self.is_full_size = is_full_size;
     }
 
     /// The scene, for the drawing thread.
-    pub(super) fn scene(&self) -> Scene {
+    pub(crate) fn scene(&self) -> Scene {
         self.scene.clone()
     }
 
     /// Width and height of the window in pixels.
-    pub(super) fn size(&self) -> [u32; 2] {
+    pub(crate) fn size(&self) -> [u32; 2] {
         [self.settings.width, self.settings.height]
     }
 
-    pub(super) fn num_drawn(&self) -> u32 {
+    pub(crate) fn num_drawn(&self) -> u32 {
         self.num_drawn
     }
 
-    pub(super) fn resize(&mut self, [width, height]: [u32; 2]) {
+    pub(crate) fn resize(&mut self, [width, height]: [u32; 2]) {
         (self.settings.width, self.settings.height) = (width.clamp(1, 32768), height.clamp(1, 32768));
         self.pace.forget();
         self.change();
     }
 
     /// Does what a key or button means. Whether the viewer goes on.
-    pub(super) fn act(&mut self, act: Act) -> bool {
+    pub(crate) fn act(&mut self, act: Act) -> bool {
         match act {
             Act::Turn(yaw, pitch) => self.orbit.turn(yaw, pitch),
             Act::Pan(right, up) => self.orbit.pan(right, up),
@@ -168,7 +169,7 @@ impl Viewer {
     }
 
     /// Opens the inspector on a pixel of the window.
-    pub(super) fn inspect(&mut self, [x, y]: [u32; 2]) {
+    pub(crate) fn inspect(&mut self, [x, y]: [u32; 2]) {
         let [width, _] = self.size();
         let scene = Scene { camera: self.orbit.camera(), ..self.scene.clone() };
         let side = usize::from(self.is_split && x >= width / 2);
@@ -180,7 +181,7 @@ impl Viewer {
     }
 
     /// Loads a file that was dropped: a scene, or an image as a map of the scene shown. What the drawing thread must know.
-    pub(super) fn load(&mut self, dropped: &Path) -> Option<Wish> {
+    pub(crate) fn load(&mut self, dropped: &Path) -> Option<Wish> {
         let mut options = self.load_options.clone();
         let path = match kind_of(dropped) {
             Kind::Scene => dropped.to_owned(),
@@ -216,7 +217,7 @@ impl Viewer {
     }
 
     /// The next frame to draw, if one is due; or when to ask again.
-    pub(super) fn next(&mut self, now: Instant) -> Result<Wish, Option<Instant>> {
+    pub(crate) fn next(&mut self, now: Instant) -> Result<Wish, Option<Instant>> {
         if self.under_way.is_some() {
             return Err(None);
         }
@@ -245,7 +246,7 @@ impl Viewer {
     }
 
     /// Takes what the drawing thread gives.
-    pub(super) fn drawn(&mut self, answer: Answer) {
+    pub(crate) fn drawn(&mut self, answer: Answer) {
         let scale = self.under_way.take().unwrap_or(1);
         match answer {
             Ok(drawn) => {
@@ -258,12 +259,12 @@ impl Viewer {
     }
 
     /// How wide the pixels of the frame shown are.
-    pub(super) fn shown_scale(&self) -> u32 {
+    pub(crate) fn shown_scale(&self) -> u32 {
         self.shown_scale
     }
 
     /// The window's content.
-    pub(super) fn picture(&self) -> Canvas {
+    pub(crate) fn picture(&self) -> Canvas {
         let mut canvas = overlay::frames(&self.shown, self.size());
         let names = self.filters.map(|filter| word(FILTERS, &filter));
         let names = &names[..if self.is_split { 2 } else { 1 }];
@@ -272,7 +273,7 @@ impl Viewer {
             overlay::beside(&mut canvas, inspected);
         }
         if self.shows_help {
-            overlay::lines(&mut canvas, super::KEYS);
+            overlay::lines(&mut canvas, KEYS);
         } else if let Some(message) = &self.message {
             overlay::lines(&mut canvas, message);
         }
@@ -309,8 +310,8 @@ fn kind_of(path: &Path) -> Kind {
 
 #[cfg(test)]
 mod tests {
-    use super::super::worker::Drawn;
     use super::*;
+    use crate::view::worker::Drawn;
 
     fn viewer() -> Viewer {
         let settings = Settings { width: 320, height: 180, ..Settings::default() };

@@ -1,8 +1,8 @@
 //! The window: winit for events, softbuffer for pixels.
 
-use super::super::Refusal;
-use super::state::{Act, Viewer};
-use super::worker::{Answer, Worker};
+use crate::refusal::Refusal;
+use crate::view::state::{Act, Viewer};
+use crate::view::worker::{Answer, Worker};
 use softbuffer::{Context, Surface};
 use std::num::NonZeroU32;
 use std::rc::Rc;
@@ -23,7 +23,7 @@ const KEY_TURN: f32 = 0.08;
 const SPIN: f32 = 0.5;
 
 /// Shows the viewer until it is closed, or for the time of a spin, of which it gives a report.
-pub(super) fn run(viewer: Viewer, num_threads: usize, spin: Option<Duration>) -> Result<Option<String>, Refusal> {
+pub(crate) fn run(viewer: Viewer, num_threads: usize, spin: Option<Duration>) -> Result<Option<String>, Refusal> {
     let events = EventLoop::<Answer>::with_user_event().build().map_err(|e| no_window(&e))?;
     let proxy = events.create_proxy();
     let answer = move |answer| {
@@ -54,7 +54,7 @@ fn no_window(error: &dyn std::error::Error) -> Refusal {
     let text = error.to_string();
     let reason =
         text.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": ")).map_or(&*text, |(_, reason)| reason);
-    format!("no window can be opened: {reason}")
+    format!("no window can be opened: {reason}").into()
 }
 
 type Pixels = Surface<OwnedDisplayHandle, Rc<Window>>;
@@ -109,7 +109,7 @@ impl Spin {
 }
 
 impl App {
-    fn fail(&mut self, events: &ActiveEventLoop, failure: String) {
+    fn fail(&mut self, events: &ActiveEventLoop, failure: Refusal) {
         self.failure.get_or_insert(failure);
         events.exit();
     }
@@ -257,7 +257,7 @@ impl ApplicationHandler<Answer> for App {
             WindowEvent::Resized(size) => self.viewer.resize([size.width, size.height]),
             WindowEvent::RedrawRequested => {
                 if let Err(e) = self.paint() {
-                    self.fail(events, format!("no pixels can be shown: {e}"));
+                    self.fail(events, format!("no pixels can be shown: {e}").into());
                 }
             }
             WindowEvent::ModifiersChanged(modifiers) => self.modifiers = modifiers.state(),

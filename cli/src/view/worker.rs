@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Instant;
 
 /// What is to be drawn.
-pub(super) enum Wish {
+pub(crate) enum Wish {
     /// A frame, or the halves of one for a split screen.
     Draw { camera: Camera, settings: Vec<Settings> },
     /// Frames of another scene from now on.
@@ -15,23 +15,23 @@ pub(super) enum Wish {
 }
 
 /// What was drawn.
-pub(super) struct Drawn {
-    pub(super) frames: Vec<Frame>,
+pub(crate) struct Drawn {
+    pub(crate) frames: Vec<Frame>,
     /// Milliseconds that drawing took, tables not counted.
-    pub(super) ms: f64,
+    pub(crate) ms: f64,
 }
 
 /// What comes back: frames, or why there are none.
-pub(super) type Answer = Result<Drawn, String>;
+pub(crate) type Answer = Result<Drawn, String>;
 
 /// The drawing thread.
-pub(super) struct Worker {
+pub(crate) struct Worker {
     wishes: Sender<Wish>,
 }
 
 impl Worker {
     /// Starts the thread; `answer` is called on it.
-    pub(super) fn start(
+    pub(crate) fn start(
         scene: Scene,
         num_threads: usize,
         answer: impl Fn(Answer) + Send + 'static,
@@ -43,7 +43,7 @@ impl Worker {
     }
 
     /// Says what is to be drawn. One frame is drawn at a time.
-    pub(super) fn wish(&self, wish: Wish) {
+    pub(crate) fn wish(&self, wish: Wish) {
         // The thread lives as long as there are wishes.
         let _ = self.wishes.send(wish);
     }

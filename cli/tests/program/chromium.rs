@@ -1,6 +1,5 @@
 //! A headless Chromium that opens a file and is used as its user would: by keys, at a window's size, in light or dark.
 //! Speaks the browser's debugging protocol on a local port that the browser chooses.
-#![allow(unreachable_pub, reason = "a part of one test")]
 
 use base64::Engine;
 use serde_json::{Value, json};
@@ -12,18 +11,18 @@ use std::time::{Duration, Instant};
 use tungstenite::{Message, WebSocket};
 
 /// A browser with one page, ended when dropped.
-pub struct Chromium {
+pub(crate) struct Chromium {
     browser: Child,
     socket: WebSocket<TcpStream>,
     next_id: u64,
     /// What the page said on its console, and errors that it did not catch.
-    pub complaints: Vec<String>,
+    pub(crate) complaints: Vec<String>,
     _profile: tempfile::TempDir,
 }
 
 impl Chromium {
     /// Starts the browser, if there is one.
-    pub fn start() -> Option<Self> {
+    pub(crate) fn start() -> Option<Self> {
         let profile = tempfile::tempdir().unwrap();
         let mut command = Command::new("chromium");
         command.args([
@@ -52,14 +51,14 @@ impl Chromium {
     }
 
     /// Opens a file and waits until it is there.
-    pub fn open(&mut self, path: &Path) {
+    pub(crate) fn open(&mut self, path: &Path) {
         let url = format!("file://{}", path.canonicalize().unwrap().display());
         self.call("Page.navigate", json!({ "url": url }));
         self.wait_until("document.readyState === 'complete' && location.protocol === 'file:'");
     }
 
     /// Sets the window's size and whether the user likes it dark.
-    pub fn look(&mut self, [width, height]: [u32; 2], is_dark: bool) {
+    pub(crate) fn look(&mut self, [width, height]: [u32; 2], is_dark: bool) {
         let is_mobile = width < 600;
         self.call(
             "Emulation.setDeviceMetricsOverride",
@@ -71,7 +70,7 @@ impl Chromium {
     }
 
     /// Presses and lets go of a key.
-    pub fn press(&mut self, key: &str, code: &str, is_shifted: bool) {
+    pub(crate) fn press(&mut self, key: &str, code: &str, is_shifted: bool) {
         let virtual_key = match key {
             "ArrowRight" => 39,
             "ArrowLeft" => 37,
@@ -86,14 +85,14 @@ impl Chromium {
     }
 
     /// The value of an expression.
-    pub fn value(&mut self, expression: &str) -> Value {
+    pub(crate) fn value(&mut self, expression: &str) -> Value {
         let result = self.call("Runtime.evaluate", json!({ "expression": expression, "returnByValue": true }));
         assert!(result["exceptionDetails"].is_null(), "{expression}: {}", result["exceptionDetails"]);
         result["result"]["value"].clone()
     }
 
     /// Waits until an expression is true.
-    pub fn wait_until(&mut self, expression: &str) {
+    pub(crate) fn wait_until(&mut self, expression: &str) {
         let start = Instant::now();
         while self.value(expression) != json!(true) {
             assert!(start.elapsed() < Duration::from_secs(60), "never true: {expression}");
@@ -102,7 +101,7 @@ impl Chromium {
     }
 
     /// The page as a PNG, all of it.
-    pub fn screenshot(&mut self) -> Vec<u8> {
+    pub(crate) fn screenshot(&mut self) -> Vec<u8> {
         let shot = self.call("Page.captureScreenshot", json!({ "captureBeyondViewport": true }));
         base64::prelude::BASE64_STANDARD.decode(shot["data"].as_str().unwrap()).unwrap()
     }

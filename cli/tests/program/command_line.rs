@@ -1,10 +1,7 @@
 //! The program as its users meet it: exit codes, messages, files.
 
-#[path = "common/program.rs"]
-mod program;
-
+use crate::folder::{Folder, json, skipped, text};
 use basrelief::Frame;
-use program::{Folder, json, skipped, text};
 use std::fs;
 use std::path::Path;
 use std::process::Command;

@@ -1,5 +1,4 @@
 //! The program in a folder of its own.
-#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
 use basrelief::Frame;
 use std::fs;
@@ -11,39 +10,39 @@ use tempfile::TempDir;
 const QUAD: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
 
 /// A folder with `quad.obj`, in which the program runs.
-pub struct Folder(TempDir);
+pub(crate) struct Folder(TempDir);
 
 impl Folder {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         folder.put("quad.obj", QUAD);
         folder
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    pub fn put(&self, name: &str, content: impl AsRef<[u8]>) {
+    pub(crate) fn put(&self, name: &str, content: impl AsRef<[u8]>) {
         fs::write(self.path(name), content).unwrap();
     }
 
-    pub fn put_image(&self, name: &str, color: [f32; 4]) {
+    pub(crate) fn put_image(&self, name: &str, color: [f32; 4]) {
         Frame::filled(16, 12, color).save(self.path(name)).unwrap();
     }
 
-    pub fn command(&self, line: &str) -> Command {
+    pub(crate) fn command(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_basrelief"));
         command.args(line.split_whitespace()).current_dir(self.0.path());
         command
     }
 
-    pub fn run(&self, line: &str) -> Output {
+    pub(crate) fn run(&self, line: &str) -> Output {
         self.command(line).output().unwrap()
     }
 
     /// Names and contents of all files.
-    pub fn contents(&self) -> Vec<(PathBuf, Vec<u8>)> {
+    pub(crate) fn contents(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let paths = fs::read_dir(self.0.path()).unwrap().map(|entry| entry.unwrap().path());
         let mut files: Vec<_> =
             paths.filter(|path| path.is_file()).map(|p| (p.clone(), fs::read(&p).unwrap())).collect();
@@ -52,14 +51,14 @@ impl Folder {
     }
 
     /// Runs the program and checks that it ends well.
-    pub fn succeeds(&self, line: &str) -> Output {
+    pub(crate) fn succeeds(&self, line: &str) -> Output {
         let output = self.run(line);
         assert!(output.status.success(), "{line}: {}", text(&output.stderr));
         output
     }
 
     /// Checks that the program refuses: exit code 2, one line with `words` on stderr, nothing printed or written.
-    pub fn refuses(&self, line: &str, words: &[&str]) {
+    pub(crate) fn refuses(&self, line: &str, words: &[&str]) {
         let before = self.contents();
         let output = self.run(line);
         let message = text(&output.stderr);
@@ -72,14 +71,14 @@ impl Folder {
 }
 
 /// Says that a test cannot look at what it is about; past the harness, which shows only what failed tests print.
-pub fn skipped(why: &str) {
+pub(crate) fn skipped(why: &str) {
     std::io::stderr().write_all(format!("skipped: {why}\n").as_bytes()).unwrap();
 }
 
-pub fn text(bytes: &[u8]) -> String {
+pub(crate) fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-pub fn json(bytes: &[u8]) -> serde_json::Value {
+pub(crate) fn json(bytes: &[u8]) -> serde_json::Value {
     serde_json::from_slice(bytes).unwrap()
 }

@@ -1,9 +1,6 @@
 //! Many frames, shards, regions and their joining: the same bytes whichever way the work is split.
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::{Folder, json, text};
+use crate::folder::{Folder, json, text};
 use std::collections::BTreeMap;
 use std::fs;
 

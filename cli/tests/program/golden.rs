@@ -1,11 +1,8 @@
 //! Golden images, by the library and by the program.
 
-#[path = "common/program.rs"]
-mod program;
-
+use crate::folder::{Folder, json, text};
 use basrelief::Frame;
 use basrelief::golden::{Thresholds, check};
-use program::{Folder, json, text};
 use std::fs;
 
 fn names(folder: &Folder, name: &str) -> Vec<String> {

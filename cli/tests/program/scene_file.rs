@@ -1,10 +1,7 @@
 //! Scene files: pictures that can be kept and repeated, and what is said of mistakes in them.
 
-#[path = "common/program.rs"]
-mod program;
-
+use crate::folder::{Folder, text};
 use basrelief::Frame;
-use program::{Folder, text};
 use std::fs;
 
 /// A folder with a model of two materials, `left` and `right`, and maps.

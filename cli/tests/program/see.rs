@@ -1,9 +1,6 @@
 //! `basrelief inspect` and `render --view` as their users meet them.
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::{Folder, json, text};
+use crate::folder::{Folder, json, text};
 use std::path::PathBuf;
 
 fn picture(path: PathBuf) -> image::RgbImage {

@@ -1,12 +1,7 @@
 //! The page of `basrelief study` as a browser shows it. Without Chromium on the machine only its text is looked at.
 
-#[path = "common/chromium.rs"]
-mod chromium;
-#[path = "common/program.rs"]
-mod program;
-
-use chromium::Chromium;
-use program::{Folder, skipped};
+use crate::chromium::Chromium;
+use crate::folder::{Folder, skipped};
 use serde_json::json;
 use std::path::Path;
 use std::process::Command;

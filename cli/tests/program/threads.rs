@@ -1,10 +1,6 @@
 //! How many threads the program draws with when none are asked for.
-#![cfg(target_os = "linux")]
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::{Folder, json, skipped, text};
+use crate::folder::{Folder, json, skipped, text};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;

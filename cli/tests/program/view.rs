@@ -1,14 +1,9 @@
 //! The window of `basrelief view` on a virtual screen. Without Xvfb on the machine these tests say that they are skipped.
 
-#[path = "common/program.rs"]
-mod program;
-#[path = "common/xvfb.rs"]
-mod xvfb;
-
-use program::skipped;
+use crate::folder::skipped;
+use crate::xvfb::{Screen, Shot};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
-use xvfb::{Screen, Shot};
 
 const SIZE: [usize; 2] = [320, 180];
 

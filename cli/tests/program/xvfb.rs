@@ -1,5 +1,4 @@
 //! A screen without a screen, and a hand on its keys and mouse. Ended when dropped.
-#![allow(unreachable_pub, reason = "a part of one test")]
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -15,23 +14,23 @@ use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
 
 /// A virtual X server.
-pub struct Screen {
+pub(crate) struct Screen {
     server: Child,
-    pub display: String,
+    pub(crate) display: String,
     connection: RustConnection,
     root: Window,
 }
 
 /// Red, green and blue of each pixel.
 #[derive(PartialEq)]
-pub struct Shot {
-    pub width: usize,
-    pub pixels: Vec<[u8; 3]>,
+pub(crate) struct Shot {
+    pub(crate) width: usize,
+    pub(crate) pixels: Vec<[u8; 3]>,
 }
 
 impl Screen {
     /// Starts the server, if there is one.
-    pub fn start(width: u32, height: u32) -> Option<Self> {
+    pub(crate) fn start(width: u32, height: u32) -> Option<Self> {
         let mut command = Command::new("Xvfb");
         command.args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0", &format!("{width}x{height}x24")]);
         let mut server = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
@@ -44,7 +43,7 @@ impl Screen {
     }
 
     /// Waits for a window, and gives it the keyboard, since no window manager does.
-    pub fn window(&self) -> Window {
+    pub(crate) fn window(&self) -> Window {
         let window = wait_for("a window", || {
             let children = self.connection.query_tree(self.root).unwrap().reply().unwrap().children;
             children.into_iter().find(|child| {
@@ -60,7 +59,7 @@ impl Screen {
     }
 
     /// What a window shows.
-    pub fn shot(&self, window: Window) -> Shot {
+    pub(crate) fn shot(&self, window: Window) -> Shot {
         let geometry = self.connection.get_geometry(window).unwrap().reply().unwrap();
         let (width, height) = (geometry.width, geometry.height);
         let image = self.connection.get_image(ImageFormat::Z_PIXMAP, window, 0, 0, width, height, u32::MAX);
@@ -69,7 +68,7 @@ impl Screen {
     }
 
     /// Waits until a window shows what is asked for, and then no more change.
-    pub fn wait_for(&self, window: Window, what: &str, is_there: impl Fn(&Shot) -> bool) -> Shot {
+    pub(crate) fn wait_for(&self, window: Window, what: &str, is_there: impl Fn(&Shot) -> bool) -> Shot {
         let mut last = self.shot(window);
         let mut since = Instant::now();
         wait_for(what, || {
@@ -85,7 +84,7 @@ impl Screen {
     }
 
     /// Presses and lets go of the key of a keysym.
-    pub fn press(&self, keysym: u32) {
+    pub(crate) fn press(&self, keysym: u32) {
         let setup = self.connection.setup();
         let (first, last) = (setup.min_keycode, setup.max_keycode);
         let map = self.connection.get_keyboard_mapping(first, last - first + 1).unwrap().reply().unwrap();
@@ -96,12 +95,12 @@ impl Screen {
     }
 
     /// Moves the pointer.
-    pub fn point(&self, [x, y]: [i16; 2]) {
+    pub(crate) fn point(&self, [x, y]: [i16; 2]) {
         self.event(xproto::MOTION_NOTIFY_EVENT, 0, [x, y]);
     }
 
     /// Presses or lets go of a mouse button.
-    pub fn button(&self, number: u8, is_down: bool) {
+    pub(crate) fn button(&self, number: u8, is_down: bool) {
         self.event(if is_down { xproto::BUTTON_PRESS_EVENT } else { xproto::BUTTON_RELEASE_EVENT }, number, [0, 0]);
     }
 
@@ -116,7 +115,7 @@ impl Screen {
     }
 
     /// Drops a file on a window, as a file manager does (the XDND protocol).
-    pub fn drop_file(&self, window: Window, path: &std::path::Path) {
+    pub(crate) fn drop_file(&self, window: Window, path: &std::path::Path) {
         let connection = &self.connection;
         let source = connection.generate_id().unwrap();
         let aux = xproto::CreateWindowAux::new();

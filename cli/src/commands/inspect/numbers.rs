@@ -1,8 +1,8 @@
 //! The numbers of an inspected pixel, formula by formula, as text or JSON.
 
-use super::super::Refusal;
-use super::super::choices::{DERIVATIVES, FORMULAS, word};
-use super::Subject;
+use crate::commands::inspect::subject::Subject;
+use crate::options::choices::{DERIVATIVES, FORMULAS, word};
+use crate::refusal::Refusal;
 use basrelief::inspect::{Conic, Corner, Cut, Inspection, Projected, Ray, Reading, Sets};
 use basrelief::{Derivatives, Formulas};
 use serde::Serialize;
@@ -34,7 +34,7 @@ const RIGHT_SIDES: [[[&str; 4]; 2]; 2] = [
 ];
 
 /// Lines for people.
-pub(super) fn text(seen: &Inspection, subject: &Subject) -> String {
+pub(crate) fn text(seen: &Inspection, subject: &Subject) -> String {
     let mut text = subject.title.map(|title| format!("{title}\n")).unwrap_or_default();
     let [x, y] = seen.pixel;
     let size = format!("{}x{}", subject.settings.width, subject.settings.height);
@@ -131,7 +131,7 @@ fn push_cut(text: &mut String, cut: &Cut) {
 }
 
 /// One JSON object.
-pub(super) fn json(seen: &Inspection, subject: &Subject) -> Result<String, Refusal> {
+pub(crate) fn json(seen: &Inspection, subject: &Subject) -> Result<String, Refusal> {
     let report = Report::new(seen, subject);
     Ok(serde_json::to_string(&report).map_err(|e| format!("--json: {e}"))? + "\n")
 }

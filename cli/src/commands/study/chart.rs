@@ -1,7 +1,7 @@
 //! Quality against time, as SVG whose colours the page sets.
 
-use super::super::Refusal;
-use super::gather::{Outcome, Study};
+use crate::commands::study::gather::{Outcome, Study};
+use crate::refusal::Refusal;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (440, 370);
@@ -12,24 +12,24 @@ const POINT: RGBColor = RGBColor(1, 115, 178);
 const FRONT: RGBColor = RGBColor(222, 143, 5);
 
 /// What is drawn upwards.
-pub(super) struct Axis {
-    pub(super) title: &'static str,
+pub(crate) struct Axis {
+    pub(crate) title: &'static str,
     /// The number that is drawn.
-    pub(super) value: fn(&Outcome) -> f64,
+    pub(crate) value: fn(&Outcome) -> f64,
     /// Whether less is better: then the axis is turned over, so that better is higher.
-    pub(super) is_falling: bool,
+    pub(crate) is_falling: bool,
 }
 
 impl Axis {
     /// The trials that nothing beats.
-    pub(super) fn front(&self, study: &Study) -> Vec<usize> {
+    pub(crate) fn front(&self, study: &Study) -> Vec<usize> {
         let sign = if self.is_falling { -1.0 } else { 1.0 };
         study.front(|outcome| sign * (self.value)(outcome))
     }
 }
 
 /// A chart of a study, its points numbered from 1 as the trials are.
-pub(super) fn svg(study: &Study, axis: &Axis) -> Result<String, Refusal> {
+pub(crate) fn svg(study: &Study, axis: &Axis) -> Result<String, Refusal> {
     let mut svg = String::new();
     draw(study, axis, &mut svg).map_err(|e| format!("chart: {e}"))?;
     Ok(svg)
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn finite_trials_are_numbered_points() {
-        let study = super::super::gather::tests::study(&[(10.0, 30.0), (20.0, f64::INFINITY), (400.0, 50.0)]);
+        let study = crate::commands::study::gather::tests::study(&[(10.0, 30.0), (20.0, f64::INFINITY), (400.0, 50.0)]);
         let axis = Axis { title: "PSNR", value: |outcome| outcome.psnr, is_falling: false };
         let svg = svg(&study, &axis).unwrap();
         assert_eq!(svg.matches("<circle").count(), 2, "{svg}");
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn equal_trials_are_a_chart_too() {
-        let study = super::super::gather::tests::study(&[(10.0, 30.0), (10.0, 30.0)]);
+        let study = crate::commands::study::gather::tests::study(&[(10.0, 30.0), (10.0, 30.0)]);
         let axis = Axis { title: "FLIP", value: |outcome| outcome.flip, is_falling: true };
         assert!(svg(&study, &axis).unwrap().contains("</svg>"));
     }

@@ -1,29 +1,30 @@
 //! The parts of the picture where the filters differ most.
 
-use super::gather::png;
 use basrelief::Frame;
+use basrelief::frame::Format;
 use basrelief::texture::srgb_from_linear;
 
 /// How many parts are shown.
 const NUM: usize = 3;
 
 /// A part of the picture, as every filter draws it.
-pub(super) struct Crop {
+pub(crate) struct Crop {
     /// Left, top, width and height in pixels.
-    pub(super) area: [usize; 4],
-    pub(super) truth_png: Vec<u8>,
+    pub(crate) area: [usize; 4],
+    pub(crate) truth_png: Vec<u8>,
     /// One for each trial.
-    pub(super) pngs: Vec<Vec<u8>>,
+    pub(crate) pngs: Vec<Vec<u8>>,
 }
 
 /// Chooses parts that do not overlap, those first in which the trials' frames lie furthest apart.
-pub(super) fn choose(truth: &Frame, frames: &[Frame]) -> Result<Vec<Crop>, basrelief::Error> {
+pub(crate) fn choose(truth: &Frame, frames: &[Frame]) -> Result<Vec<Crop>, basrelief::Error> {
     let [width, height] = [truth.width as usize, truth.height as usize];
     let side = |whole: usize| (whole / 8).max(8).min(whole);
     let areas = furthest_apart(&spread(frames, width * height), [width, height], [side(width), side(height)]);
     let cut_all = |area: [usize; 4]| {
-        let pngs: Result<_, _> = frames.iter().map(|frame| png(&cut(frame, area))).collect();
-        Ok(Crop { area, truth_png: png(&cut(truth, area))?, pngs: pngs? })
+        let png = |frame: &Frame| cut(frame, area).encode(Format::Png);
+        let pngs: Result<_, _> = frames.iter().map(png).collect();
+        Ok(Crop { area, truth_png: png(truth)?, pngs: pngs? })
     };
     areas.into_iter().map(cut_all).collect()
 }

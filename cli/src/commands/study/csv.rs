@@ -1,10 +1,10 @@
 //! The figures as a table for other programs.
 
-use super::gather::Study;
+use crate::commands::study::gather::Study;
 use std::fmt::Write;
 
 /// Comma-separated values with a row of names; an infinite ratio is `inf`.
-pub(super) fn table(study: &Study) -> String {
+pub(crate) fn table(study: &Study) -> String {
     let front = study.front(|outcome| outcome.psnr);
     let mut table = String::from("filter,options,width,height,threads,frame_ms,psnr_db,ssim,flip,on_psnr_front\n");
     for (i, outcome) in study.outcomes.iter().enumerate() {
@@ -27,7 +27,7 @@ pub(super) fn table(study: &Study) -> String {
 mod tests {
     #[test]
     fn every_trial_has_a_row() {
-        let table = super::table(&super::super::gather::tests::study(&[(10.0, 30.0), (20.0, f64::INFINITY)]));
+        let table = super::table(&crate::commands::study::gather::tests::study(&[(10.0, 30.0), (20.0, f64::INFINITY)]));
         let lines: Vec<&str> = table.lines().collect();
         assert_eq!(lines.len(), 3);
         assert!(lines[1].starts_with("\"nearest\",--filter nearest,1280,720,") && lines[1].ends_with(",true"));

@@ -1,64 +1,63 @@
 //! Draws and measures the trials.
 
-use super::super::Refusal;
-use super::super::progress::Progress;
-use super::super::settings::refusal;
-use super::crops::{self, Crop};
-use super::machine::Machine;
-use super::trials::{TRIALS, Trial};
+use crate::commands::study::crops::{self, Crop};
+use crate::commands::study::machine::Machine;
+use crate::commands::study::trials::{TRIALS, Trial};
+use crate::progress::Progress;
+use crate::refusal::Refusal;
 use basrelief::frame::Format;
 use basrelief::metrics::{PIXELS_PER_DEGREE, Picture, compare, errors_as_colors, flip, heat_map};
 use basrelief::{Filter, Frame, Renderer, Scene, Settings};
 use std::time::Instant;
 
 /// The error that the heat maps show in their brightest colour.
-pub(super) const HEAT_SCALE: f32 = 0.25;
+pub(crate) const HEAT_SCALE: f32 = 0.25;
 
 /// The same of FLIP errors.
-pub(super) const FLIP_SCALE: f32 = 0.5;
+pub(crate) const FLIP_SCALE: f32 = 0.5;
 
 /// How much work is done.
 #[derive(Clone, Copy)]
-pub(super) struct Plan {
-    pub(super) truth_samples: u32,
-    pub(super) repeat: u32,
+pub(crate) struct Plan {
+    pub(crate) truth_samples: u32,
+    pub(crate) repeat: u32,
 }
 
 /// What was found.
-pub(super) struct Study {
-    pub(super) settings: Settings,
-    pub(super) plan: Plan,
-    pub(super) machine: Machine,
-    pub(super) num_triangles: usize,
-    pub(super) truth_ms: f64,
-    pub(super) tables_ms: f64,
-    pub(super) outcomes: Vec<Outcome>,
-    pub(super) truth_png: Vec<u8>,
-    pub(super) crops: Vec<Crop>,
+pub(crate) struct Study {
+    pub(crate) settings: Settings,
+    pub(crate) plan: Plan,
+    pub(crate) machine: Machine,
+    pub(crate) num_triangles: usize,
+    pub(crate) truth_ms: f64,
+    pub(crate) tables_ms: f64,
+    pub(crate) outcomes: Vec<Outcome>,
+    pub(crate) truth_png: Vec<u8>,
+    pub(crate) crops: Vec<Crop>,
 }
 
 /// A trial's figures and pictures.
-pub(super) struct Outcome {
-    pub(super) trial: &'static Trial,
+pub(crate) struct Outcome {
+    pub(crate) trial: &'static Trial,
     /// Middle time of a frame in milliseconds.
-    pub(super) ms: f64,
+    pub(crate) ms: f64,
     /// In decibels; infinite where the pictures are equal.
-    pub(super) psnr: f64,
-    pub(super) ssim: f64,
+    pub(crate) psnr: f64,
+    pub(crate) ssim: f64,
     /// 0 to 1, less is better.
-    pub(super) flip: f64,
-    pub(super) png: Vec<u8>,
-    pub(super) error_png: Vec<u8>,
-    pub(super) flip_png: Vec<u8>,
+    pub(crate) flip: f64,
+    pub(crate) png: Vec<u8>,
+    pub(crate) error_png: Vec<u8>,
+    pub(crate) flip_png: Vec<u8>,
 }
 
 /// Draws and measures everything.
-pub(super) fn run(scene: Scene, settings: &Settings, plan: Plan, progress: &Progress) -> Result<Study, Refusal> {
+pub(crate) fn run(scene: Scene, settings: &Settings, plan: Plan, progress: &Progress) -> Result<Study, Refusal> {
     let num_triangles = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     progress.stage(format!("drawing the truth, {} rays a pixel", plan.truth_samples));
     let start = Instant::now();
     let truth = Settings { filter: Filter::Truth, samples: plan.truth_samples, ..settings.clone() };
-    let mut renderer = Renderer::new(scene, truth).map_err(|e| refusal(&e))?;
+    let mut renderer = Renderer::new(scene, truth)?;
     let truth = over_black(renderer.render());
     let truth_ms = milliseconds(start);
     let truth_picture = Picture::from(&truth);
@@ -66,10 +65,10 @@ pub(super) fn run(scene: Scene, settings: &Settings, plan: Plan, progress: &Prog
     for (i, trial) in TRIALS.iter().enumerate() {
         progress.stage(format!("{} ({} of {})", trial.name, i + 1, TRIALS.len()));
         let start = Instant::now();
-        renderer.set_settings(trial.settings(settings)).map_err(|e| refusal(&e))?;
+        renderer.set_settings(trial.settings(settings))?;
         tables_ms = tables_ms.max(milliseconds(start));
         let (frame, ms) = draw(&mut renderer, plan.repeat);
-        outcomes.push(measured(trial, ms, &frame, &truth_picture).map_err(|e| refusal(&e))?);
+        outcomes.push(measured(trial, ms, &frame, &truth_picture)?);
         frames.push(frame);
     }
     Ok(Study {
@@ -80,8 +79,8 @@ pub(super) fn run(scene: Scene, settings: &Settings, plan: Plan, progress: &Prog
         truth_ms,
         tables_ms,
         outcomes,
-        truth_png: png(&truth).map_err(|e| refusal(&e))?,
-        crops: crops::choose(&truth, &frames).map_err(|e| refusal(&e))?,
+        truth_png: png(&truth)?,
+        crops: crops::choose(&truth, &frames)?,
     })
 }
 
@@ -121,7 +120,7 @@ fn over_black(mut frame: Frame) -> Frame {
     frame
 }
 
-pub(super) fn png(frame: &Frame) -> Result<Vec<u8>, basrelief::Error> {
+fn png(frame: &Frame) -> Result<Vec<u8>, basrelief::Error> {
     frame.encode(Format::Png)
 }
 
@@ -131,7 +130,7 @@ fn milliseconds(start: Instant) -> f64 {
 
 impl Study {
     /// The trials of which no other is both faster and better, by a quality that grows, from the fastest to the best.
-    pub(super) fn front(&self, quality: impl Fn(&Outcome) -> f64) -> Vec<usize> {
+    pub(crate) fn front(&self, quality: impl Fn(&Outcome) -> f64) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.outcomes.len()).collect();
         let key = |i: usize| (self.outcomes[i].ms, -quality(&self.outcomes[i]));
         order.sort_by(|&a, &b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
@@ -146,11 +145,11 @@ impl Study {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// A study of made-up figures: milliseconds and decibels.
-    pub(in super::super) fn study(figures: &[(f64, f64)]) -> Study {
+    pub(crate) fn study(figures: &[(f64, f64)]) -> Study {
         let outcome = |(i, &(ms, psnr)): (usize, &(f64, f64))| Outcome {
             trial: &TRIALS[i],
             ms,

@@ -3,16 +3,16 @@
 use sysinfo::{CpuRefreshKind, RefreshKind, System};
 
 /// Processor, system and build.
-pub(super) struct Machine {
-    pub(super) processor: String,
-    pub(super) system: String,
+pub(crate) struct Machine {
+    pub(crate) processor: String,
+    pub(crate) system: String,
     /// Threads that frames were drawn with.
-    pub(super) threads: usize,
+    pub(crate) threads: usize,
 }
 
 impl Machine {
     /// This machine, with the threads of the current pool.
-    pub(super) fn here() -> Self {
+    pub(crate) fn here() -> Self {
         let system = System::new_with_specifics(RefreshKind::nothing().with_cpu(CpuRefreshKind::nothing()));
         let brand = system.cpus().first().map(|cpu| cpu.brand().trim().to_owned()).unwrap_or_default();
         let processor = if brand.is_empty() { std::env::consts::ARCH.to_owned() } else { brand };

@@ -1,8 +1,9 @@
 //! The page: one file that needs no network.
 
-use super::super::Refusal;
-use super::chart::{self, Axis};
-use super::gather::{FLIP_SCALE, HEAT_SCALE, Outcome, Study};
+use crate::commands::study::chart::{self, Axis};
+use crate::commands::study::crops::Crop;
+use crate::commands::study::gather::{FLIP_SCALE, HEAT_SCALE, Outcome, Study};
+use crate::refusal::Refusal;
 use askama::Template;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -57,7 +58,7 @@ struct CropView {
 }
 
 /// The page of a study.
-pub(super) fn html(study: &Study) -> Result<String, Refusal> {
+pub(crate) fn html(study: &Study) -> Result<String, Refusal> {
     let front = PSNR.front(study);
     let row = |(i, outcome): (usize, &Outcome)| Row {
         number: i + 1,
@@ -90,7 +91,7 @@ pub(super) fn html(study: &Study) -> Result<String, Refusal> {
         flip_scale: FLIP_SCALE,
         facts: facts(study),
     };
-    page.render().map_err(|e| format!("page: {e}"))
+    Ok(page.render().map_err(|e| format!("page: {e}"))?)
 }
 
 fn chart_view(title: &'static str, study: &Study, axis: &Axis) -> Result<Chart, Refusal> {
@@ -99,7 +100,7 @@ fn chart_view(title: &'static str, study: &Study, axis: &Axis) -> Result<Chart, 
 }
 
 fn crop_views(study: &Study) -> Vec<CropView> {
-    let view = |crop: &super::crops::Crop| {
+    let view = |crop: &Crop| {
         let [x, y, w, h] = crop.area;
         let pictures = study.outcomes.iter().zip(&crop.pngs);
         CropView {
@@ -114,7 +115,7 @@ fn crop_views(study: &Study) -> Vec<CropView> {
 /// Colours of the heat maps' scale, as CSS has them.
 fn heat_stops() -> Result<String, Refusal> {
     let steps: Vec<f32> = (0..=16).map(|i| i as f32 / 16.0).collect();
-    let colors = metrics::errors_as_colors(&steps, steps.len() as u32, 1.0).map_err(|e| e.to_string())?;
+    let colors = metrics::errors_as_colors(&steps, steps.len() as u32, 1.0)?;
     Ok(colors.to_rgb8().iter().map(|[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}")).collect::<Vec<_>>().join(","))
 }
 

@@ -3,17 +3,17 @@
 use basrelief::{Derivatives, Filter, Settings, Visibility};
 
 /// A filter with its options.
-pub(super) struct Trial {
+pub(crate) struct Trial {
     /// A short name.
-    pub(super) name: &'static str,
+    pub(crate) name: &'static str,
     /// What sets it on the command line.
-    pub(super) options: &'static str,
+    pub(crate) options: &'static str,
     change: fn(&mut Settings),
 }
 
 impl Trial {
     /// The settings of the trial, given those of the study.
-    pub(super) fn settings(&self, settings: &Settings) -> Settings {
+    pub(crate) fn settings(&self, settings: &Settings) -> Settings {
         let mut settings = settings.clone();
         (self.change)(&mut settings);
         settings
@@ -21,7 +21,7 @@ impl Trial {
 }
 
 /// Trials of one filter stand together, so that its tables are built once.
-pub(super) const TRIALS: &[Trial] = &[
+pub(crate) const TRIALS: &[Trial] = &[
     Trial { name: "nearest", options: "--filter nearest", change: |s| s.filter = Filter::Nearest },
     Trial { name: "bilinear", options: "--filter bilinear", change: |s| s.filter = Filter::Bilinear },
     Trial { name: "trilinear", options: "--filter trilinear", change: |s| s.filter = Filter::Trilinear },
@@ -80,8 +80,9 @@ pub(super) const TRIALS: &[Trial] = &[
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::args::{Cli, Command};
     use super::*;
+    use crate::options::args::{Cli, Command};
+    use crate::options::choices::FILTERS;
     use clap::Parser;
 
     #[test]
@@ -100,7 +101,7 @@ mod tests {
 
     #[test]
     fn every_filter_is_tried() {
-        for &(word, filter, _) in super::super::super::choices::FILTERS {
+        for &(word, filter, _) in FILTERS {
             let is_tried = TRIALS.iter().any(|trial| trial.settings(&Settings::default()).filter == filter);
             assert!(is_tried || filter == Filter::Truth, "{word}");
         }

@@ -14,7 +14,7 @@ pub(crate) enum Size {
 pub(crate) const CELL: [f32; 2] = [7.0, 16.0];
 
 /// The glyphs of a text.
-pub(super) fn glyphs(text: &str, size: Size) -> impl Iterator<Item = RasterizedChar> + '_ {
+pub(crate) fn glyphs(text: &str, size: Size) -> impl Iterator<Item = RasterizedChar> + '_ {
     let (weight, height) = match size {
         Size::Small => (FontWeight::Regular, RasterHeight::Size16),
         Size::Bold => (FontWeight::Bold, RasterHeight::Size16),

@@ -1,7 +1,7 @@
 //! The cut through the relief along the view; the eye is on the left, above.
 
-use super::super::draw::{CELL, Canvas, Pen, Point, Rgba, Size};
-use super::picture::{FAINT, FLAT, HIDDEN, INK, Layers, RAY, RELIEF, VISIBLE, WHITE};
+use crate::pictures::draw::{CELL, Canvas, Pen, Point, Rgba, Size};
+use crate::pictures::inspection::palette::{FAINT, FLAT, HIDDEN, INK, Layers, RAY, RELIEF, VISIBLE, WHITE};
 use basrelief::inspect::{Cut, CutPoint};
 
 const STONE: Rgba = [205, 198, 186, 255];
@@ -24,7 +24,7 @@ impl Map {
 }
 
 /// Draws a cut through the relief of a mip level.
-pub(super) fn draw(cut: &Cut, level: usize, size: [u32; 2], layers: Layers) -> Canvas {
+pub(crate) fn draw(cut: &Cut, level: usize, size: [u32; 2], layers: Layers) -> Canvas {
     let mut canvas = Canvas::new(size[0], size[1], WHITE);
     let [Some(first), Some(last)] = [cut.points.first(), cut.points.last()] else { return canvas };
     let [width, height] = size.map(f64::from);

@@ -1,20 +1,9 @@
 //! The picture of an inspected pixel: texels above, a cut below, a legend beside.
 
-use super::super::draw::{CELL, Canvas, Pen, Rgba, Size};
-use super::{cut, texels};
+use crate::pictures::draw::{CELL, Canvas, Pen, Rgba, Size};
+use crate::pictures::inspection::palette::{FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE, WHITE};
+use crate::pictures::inspection::{cut, texels};
 use basrelief::inspect::Inspection;
-
-pub(super) const WHITE: Rgba = [255, 255, 255, 255];
-pub(super) const INK: Rgba = [32, 33, 36, 255];
-pub(super) const FAINT: Rgba = [120, 124, 130, 255];
-/// Colours that the colour-blind tell apart (M. Okabe and K. Ito 2008).
-pub(super) const VISIBLE: Rgba = [0, 158, 115, 255];
-pub(super) const HIDDEN: Rgba = [213, 94, 0, 255];
-pub(super) const SKIPPED: Rgba = [240, 228, 66, 255];
-pub(super) const TWICE: Rgba = [148, 60, 160, 255];
-pub(super) const FLAT: Rgba = [0, 114, 178, 255];
-pub(super) const RELIEF: Rgba = [180, 30, 60, 255];
-pub(super) const RAY: Rgba = [20, 20, 20, 255];
 
 const WIDTH: u32 = 1280;
 const TITLE_HEIGHT: u32 = 40;
@@ -22,43 +11,8 @@ const TEXELS_SIZE: [u32; 2] = [880, 600];
 const CUT_HEIGHT: u32 = 400;
 const MARGIN: u32 = 16;
 
-/// What is drawn.
-#[derive(Clone, Copy)]
-pub(in super::super) struct Layers {
-    /// The ellipse of formula (2), and that of (3).
-    pub(super) ellipses: [bool; 2],
-    pub(super) texels: bool,
-    pub(super) hidden: bool,
-    pub(super) skipped: bool,
-    pub(super) twice: bool,
-    /// Rays from hidden texels to what covers them.
-    pub(super) rays: bool,
-    pub(super) horizon: bool,
-}
-
-impl Default for Layers {
-    fn default() -> Self {
-        Self { ellipses: [true; 2], texels: true, hidden: true, skipped: true, twice: true, rays: false, horizon: true }
-    }
-}
-
-impl Layers {
-    /// What the paper's figure shows.
-    pub(super) fn of_figure(number: u32) -> Self {
-        Self {
-            ellipses: [number <= 3, number >= 3],
-            texels: number >= 2,
-            hidden: number >= 4,
-            skipped: false,
-            twice: number == 6,
-            rays: number >= 5,
-            horizon: number >= 4,
-        }
-    }
-}
-
 /// Draws what a pixel sees; the cut only where relief is traced.
-pub(in super::super) fn draw(seen: &Inspection, title: &str, layers: Layers) -> Canvas {
+pub(crate) fn draw(seen: &Inspection, title: &str, layers: Layers) -> Canvas {
     let [width, texels_height] = TEXELS_SIZE;
     let has_cut = seen.cut.reach > 0.0;
     let top = TITLE_HEIGHT + texels_height + MARGIN;
@@ -77,7 +31,7 @@ pub(in super::super) fn draw(seen: &Inspection, title: &str, layers: Layers) -> 
 
 /// Draws what a pixel sees in less room: the texels, and the main numbers.
 #[cfg(feature = "viewer")]
-pub(in super::super) fn draw_small(seen: &Inspection, [width, height]: [u32; 2]) -> Canvas {
+pub(crate) fn draw_small(seen: &Inspection, [width, height]: [u32; 2]) -> Canvas {
     let mut canvas = Canvas::new(width, height, WHITE);
     let lines = number_lines(seen);
     let room = (CELL[1] * lines.len() as f32) as u32 + 8;

@@ -1,7 +1,7 @@
 //! The texels around a pixel's footprint, enlarged; u to the right, v upwards.
 
-use super::super::draw::{Canvas, Pen, Point, Rgba, Size};
-use super::picture::{FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE};
+use crate::pictures::draw::{Canvas, Pen, Point, Rgba, Size};
+use crate::pictures::inspection::palette::{FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE};
 use basrelief::inspect::{Conic, Inspection, Projected, Reading};
 use basrelief::texture::srgb8_from_linear;
 use std::collections::{HashMap, HashSet};
@@ -13,10 +13,10 @@ const LEAST_SCALE: f32 = 3.0;
 const MOST_RAYS: usize = 48;
 
 /// How the ellipse is drawn that is filtered where it is neither that of (2) nor that of (3).
-pub(super) const FILTERED: Pen = Pen { width: 2.0, color: INK, dash: Some([3.0, 3.0]) };
+pub(crate) const FILTERED: Pen = Pen { width: 2.0, color: INK, dash: Some([3.0, 3.0]) };
 
 /// Whether a jump of the relief is left out of the ellipse that is filtered.
-pub(super) fn is_bounded(seen: &Inspection) -> bool {
+pub(crate) fn is_bounded(seen: &Inspection) -> bool {
     let has_widened = |reading: &Reading| [reading.flat.widened, reading.relief.widened].contains(&seen.sets.ellipse);
     !seen.readings.iter().any(has_widened)
 }
@@ -30,7 +30,7 @@ struct Map {
 }
 
 /// Draws the texels.
-pub(super) fn draw(seen: &Inspection, size: [u32; 2], layers: Layers) -> Canvas {
+pub(crate) fn draw(seen: &Inspection, size: [u32; 2], layers: Layers) -> Canvas {
     let mut canvas = Canvas::new(size[0], size[1], INK);
     let map = Map::around(seen, size, layers);
     draw_texels(&mut canvas, &map, seen, layers);

@@ -1,6 +1,6 @@
 //! What colour a number has.
 
-use super::super::draw::Ramp;
+use crate::pictures::draw::Ramp;
 use basrelief::inspect::{Measured, View};
 
 /// sRGB.
@@ -15,14 +15,14 @@ const MOST_LEVEL: f32 = 10.0;
 const MOST_LOG_AREA: f32 = 20.0;
 
 /// How a view's numbers become colours.
-pub(super) struct Scale {
+pub(crate) struct Scale {
     view: View,
     /// Binary logarithms of the least and greatest distance in the frame.
     distances: [f32; 2],
 }
 
 /// What the legend shows.
-pub(super) enum Key {
+pub(crate) enum Key {
     /// A bar, and what stands at places of it, 0 to 1.
     Bar { ramp: Ramp, ticks: Vec<(f32, String)> },
     /// Areas of one colour.
@@ -30,14 +30,14 @@ pub(super) enum Key {
 }
 
 impl Scale {
-    pub(super) fn new(measured: &Measured, view: View) -> Self {
+    pub(crate) fn new(measured: &Measured, view: View) -> Self {
         let logs = measured.pixels.iter().flatten().map(|[distance, ..]| distance.log2()).filter(|log| log.is_finite());
         let (low, high) = logs.fold((f32::MAX, f32::MIN), |(low, high), log| (low.min(log), high.max(log)));
         let distances = if low < high { [low, high] } else { [0.0, 1.0] };
         Self { view, distances }
     }
 
-    pub(super) fn title(&self) -> &'static str {
+    pub(crate) fn title(&self) -> &'static str {
         match self.view {
             View::Coverage => "triangles that a pixel sees (darker: covered in part)",
             View::Mip => "mip level read (striped: tables of the far field)",
@@ -50,7 +50,7 @@ impl Scale {
         }
     }
 
-    pub(super) fn key(&self) -> Key {
+    pub(crate) fn key(&self) -> Key {
         let shares = || [0, 25, 50, 75, 100].map(|p| (p as f32 / 100.0, format!("{p}%"))).to_vec();
         let steps = |most: i32, text: &dyn Fn(i32) -> String| {
             (0..=most).map(|i| (i as f32 / most as f32, text(i))).collect::<Vec<_>>()
@@ -92,7 +92,7 @@ impl Scale {
     }
 
     /// The colour of every pixel.
-    pub(super) fn colors(&self, measured: &Measured) -> Vec<Rgb> {
+    pub(crate) fn colors(&self, measured: &Measured) -> Vec<Rgb> {
         let width = measured.width as usize;
         let color = |(i, value): (usize, &Option<[f32; 3]>)| match value {
             Some(value) => self.color(*value, [i % width, i / width]),
