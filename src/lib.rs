@@ -99,8 +99,8 @@
 //! A stage imports only from stages to its left; `simd`, `texture` and `settings` lie below all. The stages are hidden from
 //! these pages and may change with any version.
 //!
-//! Feature `cli` (on by default) builds the program; the library alone needs `default-features = false`. SIMD lanes are
-//! as wide as the crate is built for: see [`SIMD_LEVEL`] and the README.
+//! The program is the package `basrelief-cli`. SIMD lanes are as wide as the crate is built for: see [`SIMD_LEVEL`] and
+//! the README.
 #![forbid(unsafe_code)]
 
 pub mod filter;

@@ -1,10 +1,3 @@
-//! Any bytes as an MTL file: materials or an error of one line.
 #![no_main]
 
-use basrelief::scene::load_mtl_bytes;
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    if let Err(error) = load_mtl_bytes(bytes) {
-        assert!(!error.to_string().contains('\n'), "more than one line: {error}");
-    }
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| basrelief_fuzz::load_mtl(bytes));

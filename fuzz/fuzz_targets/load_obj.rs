@@ -1,11 +1,3 @@
-//! Any bytes as an OBJ file: a valid scene or an error of one line.
 #![no_main]
 
-use basrelief::scene::{LoadOptions, load_obj_bytes};
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    match load_obj_bytes(bytes, &LoadOptions::default()) {
-        Ok(loaded) => loaded.scene.validate().expect("a loaded scene is valid"),
-        Err(error) => assert!(!error.to_string().contains('\n'), "more than one line: {error}"),
-    }
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| basrelief_fuzz::load_obj(bytes));

@@ -1,124 +1,32 @@
-//! What the targets of the filters read from a fuzzer's bytes: a small texture, a pixel, settings.
+//! What the fuzz targets check, each a function of any bytes; a panic is a finding.
+//!
+//! The programs in `fuzz_targets` call these functions for the fuzzer, and the test `replay` calls
+//! them without it.
+#![forbid(unsafe_code)]
 
-use arbitrary::Arbitrary;
-use basrelief::invariants::Pixel;
-use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Camera, Filter, Light, Material, Mesh, Scene, Settings};
-use glam::{Vec2, Vec3};
-use std::sync::Arc;
+mod filters;
+mod frames;
+mod input;
+mod loaders;
 
-/// A number: mostly within -2 to 2, at times any float.
-#[derive(Arbitrary, Clone, Copy, Debug)]
-pub enum Number {
-    Small(i16),
-    Tiny(i16),
-    Whole(i8),
-    Any(f32),
-}
+pub use filters::{footprint_ellipse, horizon, march, symmetry, visible_sets};
+pub use frames::{command_line, coverage, render};
+pub use loaders::{load_image, load_mtl, load_obj};
 
-impl Number {
-    pub fn get(self) -> f32 {
-        match self {
-            Self::Small(n) => f32::from(n) / 16384.0,
-            Self::Tiny(n) => f32::from(n) / 16_777_216.0,
-            Self::Whole(n) => f32::from(n) / 8.0,
-            Self::Any(x) => x,
-        }
-    }
-}
+use arbitrary::{Arbitrary, Unstructured};
 
-/// A texture, a pixel and settings.
-#[derive(Arbitrary, Clone, Debug)]
-pub struct Input {
-    size: [u8; 2],
-    wrap: u8,
-    texels: [u8; 24],
-    footprint: [[Number; 2]; 4],
-    filter: u8,
-    budget: u8,
-    lines: u8,
-    anisotropy: u16,
-}
-
-impl Input {
-    /// Maps of up to 12 x 12 texels.
-    pub fn maps(&self) -> SurfaceMaps {
-        let [w, h] = self.size.map(|n| 1 + u32::from(n % 12));
-        let at = |x: u32, y: u32, i: u32| f32::from(self.texels[((5 * x + 7 * y + x * y + i) % 24) as usize]) / 255.0;
-        SurfaceMaps {
-            albedo: Some(ColorImage::from_fn(w, h, |x, y| [at(x, y, 3), at(x, y, 11), at(x, y, 17)])),
-            height: Some(HeightImage::from_fn(w, h, |x, y| at(x, y, 0))),
-            wrap: [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp][usize::from(self.wrap % 3)],
-            ..Default::default()
-        }
-    }
-
-    /// The colours of [`maps`](Self::maps) the other way round.
-    pub fn inverted(&self) -> ColorImage {
-        let mut image = self.maps().albedo.expect("an albedo");
-        image.texels.iter_mut().flatten().for_each(|c| *c = 65535 - *c);
-        image
-    }
-
-    /// Repeating maps of 16 x 16 texels, which turn and shift exactly, with depths that can be halved.
-    pub fn even_maps(&self) -> SurfaceMaps {
-        let at = |x: u32, y: u32, i: u32| self.texels[((5 * x + 7 * y + x * y + i) % 24) as usize];
-        let color = |x, y| [at(x, y, 3), at(x, y, 11), at(x, y, 17)].map(|c| f32::from(c) / 255.0);
-        let mut height = HeightImage::from_fn(16, 16, |x, y| f32::from(at(x, y, 0)) / 255.0);
-        height.texels.iter_mut().for_each(|h| *h = *h & !3 | 2);
-        SurfaceMaps { albedo: Some(ColorImage::from_fn(16, 16, color)), height: Some(height), ..Default::default() }
-    }
-
-    /// The pixel at a 1024th of a repeat within one of the middle, and with derivatives of up to half a repeat.
-    pub fn near_pixel(&self) -> Pixel {
-        let [center, dx, dy, view] = self.footprint.map(|pair| pair.map(Number::get));
-        let within = |pair: [f32; 2], most: f32| pair.map(|c| if c.abs() <= most { c } else { most });
-        let center = within(center, 1.0).map(|c| (c * 1024.0).round() / 1024.0);
-        Pixel::new(center, within(dx, 0.5), within(dy, 0.5), within(view, 0.6))
-    }
-
-    pub fn surface(&self) -> Surface {
-        Surface::new(self.maps()).expect("valid maps")
-    }
-
-    pub fn pixel(&self) -> Pixel {
-        let [center, dx, dy, view] = self.footprint.map(|pair| pair.map(Number::get));
-        Pixel::new(center, dx, dy, view)
-    }
-
-    pub fn settings(&self) -> Settings {
-        const FILTERS: [Filter; 6] =
-            [Filter::Nearest, Filter::Bilinear, Filter::Trilinear, Filter::Ewa, Filter::Visible, Filter::Horizon];
-        Settings {
-            filter: FILTERS[usize::from(self.filter % 6)],
-            texel_budget: 1 + u32::from(self.budget),
-            lines: 2 + u32::from(self.lines % 63),
-            max_anisotropy: 1.0 + f32::from(self.anisotropy) / 64.0,
-            far_field: false,
-            ..Settings::default()
-        }
+/// Reads an input from bytes and checks it; bytes that are too few are no input.
+fn check<'a, T: Arbitrary<'a>>(bytes: &'a [u8], check: impl FnOnce(T)) {
+    if bytes.len() >= T::size_hint(0).0
+        && let Ok(input) = T::arbitrary_take_rest(Unstructured::new(bytes))
+    {
+        check(input);
     }
 }
 
 /// Fails the run with what an invariant says.
-pub fn hold(checked: Result<(), String>) {
+fn hold(checked: Result<(), String>) {
     if let Err(reason) = checked {
         panic!("{reason}");
-    }
-}
-
-/// A floor of small steps under a light, which command lines place a camera and lights around.
-pub fn floor() -> Scene {
-    let steps = HeightImage::from_fn(8, 8, |x, y| ((x + y) % 4) as f32 / 3.0);
-    let surface = Surface::new(SurfaceMaps { height: Some(steps), ..Default::default() }).expect("valid maps");
-    let corners = [(-4.0, 4.0), (4.0, 4.0), (4.0, -4.0), (-4.0, -4.0)];
-    let positions = corners.map(|(x, z)| Vec3::new(x, -1.0, z)).to_vec();
-    let tex_coords = corners.map(|(x, z)| Vec2::new(x, -z)).to_vec();
-    Scene {
-        meshes: vec![Mesh::new(positions, tex_coords, vec![], vec![[0, 1, 2], [0, 2, 3]])],
-        materials: vec![Material { surface: Some(Arc::new(surface)), ..Material::default() }],
-        camera: Camera::framing(Vec3::splat(-4.0), Vec3::splat(4.0)),
-        lights: vec![Light::Directional { to_light: Vec3::Y, intensity: Vec3::ONE }],
-        ..Scene::default()
     }
 }

@@ -1,0 +1,321 @@
+//! Options that say what is drawn: files, camera, lights and background.
+//!
+//! The tables of a scene file hold the same options under the same names: see `scene_file`.
+
+use crate::options::choices::{self, ON_OFF, one_of};
+use crate::options::file_values::{self, PointLight, Spelt, Sun};
+use crate::options::values;
+use crate::progress::Progress;
+use crate::refusal::Refusal;
+use basrelief::scene::{self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY};
+use basrelief::texture::Wrap;
+use basrelief::{Camera, Light, Scene};
+use clap::Args;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct SceneOptions {
+    /// What to draw: an OBJ file with its MTL files and images, or a scene file (TOML, see --save-scene), which other
+    /// options override; without one, a built-in scene
+    #[arg(value_name = "SCENE")]
+    pub(crate) model: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) all_materials: MapOptions,
+    /// Options of single materials by name; only scene files give them.
+    #[arg(skip)]
+    pub(crate) material: BTreeMap<String, MapOptions>,
+    #[command(flatten)]
+    pub(crate) limits: LimitOptions,
+    #[command(flatten)]
+    pub(crate) camera: CameraOptions,
+    #[command(flatten)]
+    pub(crate) light: LightOptions,
+}
+
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[command(next_help_heading = "All materials of SCENE, in place of what its files say")]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct MapOptions {
+    /// Colour image
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(crate) albedo: Option<PathBuf>,
+    /// Height image
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(crate) height: Option<PathBuf>,
+    /// Normal map
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(crate) normal: Option<PathBuf>,
+    /// Which end of the height images is high [default: white-high]
+    #[arg(long, value_name = "END", value_parser = one_of(choices::HEIGHT_SENSES), requires = "model")]
+    #[serde(with = "choices")]
+    height_sense: Option<HeightSense>,
+    /// Depth of the relief in texture repeats, 0 to 1 [default: -bm of the MTL file, else 0.05]
+    #[arg(long, value_name = "D", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::unit")]
+    relief_depth: Option<f32>,
+    /// Where the green of normal maps points [default: up]
+    #[arg(long, value_name = "WAY", value_parser = one_of(choices::NORMAL_YS), requires = "model")]
+    #[serde(with = "choices")]
+    normal_y: Option<NormalY>,
+    /// What lies beyond a texture's edges [default: clamp where the MTL file says so, else repeat]
+    #[arg(long, value_name = "HOW", value_parser = one_of(choices::WRAPS), requires = "model")]
+    #[serde(with = "choices")]
+    wrap: Option<Wrap>,
+    /// Diffuse colour, linear, which multiplies the colour image [default: Kd of the MTL file, else 1]
+    #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::intensity")]
+    diffuse: Option<Vec3>,
+    /// Colour of highlights, linear [default: Ks of the MTL file, else 0]
+    #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::intensity")]
+    specular: Option<Vec3>,
+    /// Exponent of highlights, 0 to 10000; more is sharper [default: Ns of the MTL file, else 32]
+    #[arg(long, value_name = "N", value_parser = values::exponent, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::exponent")]
+    shininess: Option<f32>,
+}
+
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[command(next_help_heading = "Limits for SCENE, beyond which it is refused")]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct LimitOptions {
+    /// Let MTL files name images outside the folder of the OBJ file
+    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on",
+          hide_possible_values = true, value_parser = one_of(ON_OFF), requires = "model")]
+    allow_outside: Option<bool>,
+    /// Most pixels of an image's side, 1 to 32768 [default: 32768]
+    #[arg(long, value_name = "N", requires = "model", value_parser = clap::value_parser!(u32).range(1..=32768))]
+    max_image_side: Option<u32>,
+    /// Most memory of all images together in MiB while they are read, about 60 bytes a texel [default: 1024]
+    #[arg(long, value_name = "N", requires = "model", value_parser = clap::value_parser!(u32).range(1..))]
+    max_image_mib: Option<u32>,
+    /// Most triangles, and most v, vt and vn lines each [default: 50000000]
+    #[arg(long, value_name = "N", requires = "model")]
+    max_triangles: Option<u64>,
+    /// Most image files [default: 1024]
+    #[arg(long, value_name = "N", requires = "model")]
+    max_textures: Option<u32>,
+}
+
+#[derive(Args, Clone, Debug, Default, Serialize, Deserialize)]
+#[command(next_help_heading = "Camera (what is not given frames the scene)")]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct CameraOptions {
+    /// Where the eye is, in the scene's units
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::vector")]
+    eye: Option<Vec3>,
+    /// The point in the middle of the picture
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::vector")]
+    target: Option<Vec3>,
+    /// The direction that points upwards in the picture
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::direction")]
+    up: Option<Vec3>,
+    /// Vertical field of view in degrees
+    #[arg(long, value_name = "DEG", value_parser = values::field_of_view, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::field_of_view")]
+    fov: Option<f32>,
+    /// Distance from the eye before which nothing is drawn, in the scene's units
+    #[arg(long, value_name = "D", value_parser = values::above_zero, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::above_zero")]
+    near: Option<f32>,
+}
+
+#[derive(Args, Clone, Debug, Default, Serialize, Deserialize)]
+#[command(next_help_heading = "Light and background")]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct LightOptions {
+    /// Light from everywhere, linear [default: the scene's own, 0.15 for an OBJ file]
+    #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::intensity")]
+    ambient: Option<Vec3>,
+    /// Colour where nothing is hit, sRGB: transparent, #rrggbb, R,G,B of 0 to 255 or a name such as skyblue
+    /// [default: the scene's own, transparent for an OBJ file]
+    #[arg(long, value_name = "COLOUR", value_parser = Spelt::<[f32; 4]>::parse, allow_hyphen_values = true)]
+    background: Option<Spelt<[f32; 4]>>,
+    /// Light from far away: the direction towards it, and its linear colour, 1,1,1 if not given; may be repeated; takes
+    /// the place of the scene's own lights
+    #[arg(long, value_name = "X,Y,Z[,R,G,B]", value_parser = Sun::parse, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::suns", skip_serializing_if = "Vec::is_empty")]
+    sun: Vec<Sun>,
+    /// Light from a point: its place, and its linear colour at a distance of 1; may be repeated
+    #[arg(long, value_name = "X,Y,Z[,R,G,B]", value_parser = PointLight::parse, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::point_lights", skip_serializing_if = "Vec::is_empty")]
+    point_light: Vec<PointLight>,
+}
+
+impl SceneOptions {
+    /// Whether a light is given.
+    pub(crate) fn has_lights(&self) -> bool {
+        let light = &self.light;
+        !light.sun.is_empty() || !light.point_light.is_empty() || light.ambient.is_some()
+    }
+
+    /// Reads or makes the scene and sets what the options say.
+    pub(crate) fn load(&self, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
+        let report = |stage: LoadStage| progress.stage(stage.to_string());
+        let mut loaded = match &self.model {
+            Some(obj) => scene::load_reporting(obj, &self.load_options(is_lit), &report)?,
+            None if self.has_maps() => return Err("materials are given, but no model (OBJ file) that has them".into()),
+            None => built_in(),
+        };
+        self.set(&mut loaded.scene);
+        Ok(loaded)
+    }
+
+    /// Sets the camera, lights and background that are given.
+    pub(crate) fn set(&self, scene: &mut Scene) {
+        self.camera.place(&mut scene.camera);
+        self.light.set(scene);
+    }
+
+    fn has_maps(&self) -> bool {
+        self.all_materials != MapOptions::default() || !self.material.is_empty()
+    }
+
+    /// The file that is drawn, if one is named.
+    #[cfg(feature = "viewer")]
+    pub(crate) fn path(&self) -> Option<PathBuf> {
+        self.model.clone()
+    }
+
+    /// How that file is read.
+    pub(crate) fn load_options(&self, is_lit: bool) -> LoadOptions {
+        let (maps, limits) = (&self.all_materials, &self.limits);
+        let default = LoadOptions::default();
+        LoadOptions {
+            all: maps.material(),
+            materials: self.material.iter().map(|(name, maps)| (name.clone(), maps.material())).collect(),
+            keep_normals: is_lit,
+            allow_outside: limits.allow_outside.unwrap_or(default.allow_outside),
+            max_image_side: limits.max_image_side.unwrap_or(default.max_image_side),
+            max_image_mib: limits.max_image_mib.unwrap_or(default.max_image_mib),
+            max_triangles: limits.max_triangles.unwrap_or(default.max_triangles),
+            max_textures: limits.max_textures.unwrap_or(default.max_textures),
+        }
+    }
+}
+
+impl MapOptions {
+    fn material(&self) -> MaterialOptions {
+        MaterialOptions {
+            albedo: self.albedo.clone(),
+            height: self.height.clone(),
+            normal: self.normal.clone(),
+            height_sense: self.height_sense,
+            relief_depth: self.relief_depth,
+            normal_y: self.normal_y,
+            wrap: self.wrap,
+            diffuse: self.diffuse,
+            specular: self.specular,
+            shininess: self.shininess,
+        }
+    }
+}
+
+/// The scene that is drawn where no file is named.
+fn built_in() -> Loaded {
+    let choices = vec!["no SCENE given: drawing the built-in scene".into()];
+    Loaded { scene: scene::builtin(), choices, ..Loaded::default() }
+}
+
+impl From<&Camera> for CameraOptions {
+    /// Options that give all of `camera`.
+    fn from(camera: &Camera) -> Self {
+        let Camera { eye, target, up, fov_degrees, near } = *camera;
+        Self { eye: Some(eye), target: Some(target), up: Some(up), fov: Some(fov_degrees), near: Some(near) }
+    }
+}
+
+impl CameraOptions {
+    fn place(&self, camera: &mut Camera) {
+        camera.eye = self.eye.unwrap_or(camera.eye);
+        camera.target = self.target.unwrap_or(camera.target);
+        camera.up = self.up.unwrap_or(camera.up);
+        camera.fov_degrees = self.fov.unwrap_or(camera.fov_degrees);
+        camera.near = self.near.unwrap_or(camera.near);
+        let is_vertical = (camera.target - camera.eye).normalize_or_zero().cross(camera.up).length() < 1e-4;
+        if is_vertical && self.up.is_none() {
+            // Seen from straight above or below: what lies at the back is drawn at the top.
+            camera.up = Vec3::NEG_Z;
+        }
+    }
+}
+
+impl LightOptions {
+    /// Lights that are given take the place of the scene's own.
+    fn set(&self, scene: &mut Scene) {
+        let suns = self.sun.iter().map(|sun| Light::Directional { to_light: sun.direction, intensity: sun.color });
+        let point = |light: &PointLight| Light::Point { position: light.position, intensity: light.color };
+        let points = self.point_light.iter().map(point);
+        let given: Vec<Light> = suns.chain(points).collect();
+        if !given.is_empty() {
+            scene.lights = given;
+        }
+        scene.ambient = self.ambient.unwrap_or(scene.ambient);
+        scene.background = self.background.as_ref().map_or(scene.background, |color| color.value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Only {
+        #[command(flatten)]
+        options: SceneOptions,
+    }
+
+    fn parse(line: &str) -> Result<SceneOptions, Refusal> {
+        let only = Only::try_parse_from(std::iter::once("x").chain(line.split_whitespace()));
+        Ok(only.map_err(|e| e.to_string())?.options)
+    }
+
+    #[test]
+    fn camera_keeps_what_is_not_given() {
+        let mut camera = Camera::framing(Vec3::ZERO, Vec3::ONE);
+        let framing = camera;
+        parse("--eye -1,2,-3 --fov 30").unwrap().camera.place(&mut camera);
+        assert_eq!(camera, Camera { eye: Vec3::new(-1.0, 2.0, -3.0), fov_degrees: 30.0, ..framing });
+    }
+
+    #[test]
+    fn view_straight_down_needs_no_up() {
+        let mut camera = Camera::default();
+        parse("--eye 0,5,0").unwrap().camera.place(&mut camera);
+        assert_eq!(camera.validate().ok(), Some(()));
+    }
+
+    #[test]
+    fn lights_replace_the_scenes_own() {
+        let own = Light::Point { position: Vec3::ONE, intensity: Vec3::ONE };
+        let mut scene = Scene { lights: vec![own], ambient: Vec3::ONE, ..Scene::default() };
+        parse("").unwrap().light.set(&mut scene);
+        assert!(scene.lights == [own] && scene.ambient == Vec3::ONE);
+        let options = parse("--sun -1,2,3 --point-light 1,2,3,4,5,6 --sun 1,0,0 --ambient 0").unwrap();
+        assert!(options.has_lights());
+        options.light.set(&mut scene);
+        assert!(scene.lights.len() == 3 && scene.ambient == Vec3::ZERO);
+    }
+
+    #[test]
+    fn no_options_are_the_defaults_of_the_library() {
+        assert_eq!(parse("").unwrap().load_options(false), LoadOptions::default());
+    }
+
+    #[test]
+    fn options_of_files_need_a_file() {
+        for line in ["--height a.png", "--wrap clamp", "--allow-outside", "--relief-depth 0.1", "--max-textures 3"] {
+            assert!(parse(line).err().unwrap().to_string().contains("SCENE"), "{line}");
+            assert!(parse(&format!("a.obj {line}")).is_ok(), "{line}");
+        }
+        assert!(parse("a.obj --relief-depth 1.5").is_err() && parse("a.obj --relief-depth nan").is_err());
+    }
+}

@@ -1,0 +1,7 @@
+//! What an inspected pixel sees, as a picture.
+
+pub(crate) mod page;
+pub(crate) mod palette;
+
+mod cut;
+mod texels;

@@ -1,0 +1,16 @@
+//! Runs the program as its users do: one test program for all, so that it is linked once.
+
+mod chromium;
+mod command_line;
+mod folder;
+mod frames;
+mod golden;
+mod scene_file;
+mod see;
+mod study;
+#[cfg(target_os = "linux")]
+mod threads;
+#[cfg(feature = "viewer")]
+mod view;
+#[cfg(feature = "viewer")]
+mod xvfb;

@@ -1,0 +1,121 @@
+//! Whole frames: triangles, scenes and command lines.
+
+use crate::input::{Input, Number, floor};
+use crate::{check, hold};
+use arbitrary::Arbitrary;
+use basrelief::invariants::{fan_is_hit_once, frame_is_finite};
+use basrelief::{Camera, Filter, Light, Lighting, Material, Mesh, Scene, Settings};
+use basrelief_cli::{Cli, Ending};
+use glam::{Vec2, Vec3};
+use std::ffi::OsString;
+use std::sync::{Arc, LazyLock};
+
+/// A closed fan of triangles, partly behind the eye, hits no pixel twice.
+pub fn coverage(bytes: &[u8]) {
+    type Fan = ([i16; 2], [(u8, u8); 8], [i8; 2], u8);
+    check(bytes, |(center, ring, tilt, msaa): Fan| {
+        // From 4 to four million pixels.
+        let radius = |(size, digits): (u8, u8)| (1.0 + f32::from(digits) / 256.0) * (4_u32 << (size % 20)) as f32;
+        let center = center.map(|c| f32::from(c) / 1024.0);
+        let tilt = tilt.map(|t| f32::from(t) / 16.0);
+        hold(fan_is_hit_once(center, &ring.map(radius), tilt, [1, 4, 8][usize::from(msaa % 3)]));
+    });
+}
+
+/// Small scenes of any triangles, camera and settings: refused with a reason, or drawn with finite
+/// colours.
+pub fn render(bytes: &[u8]) {
+    type Corner = ([Number; 3], [Number; 2]);
+    type Drawn = (Input, Vec<Corner>, [[Number; 3]; 2], u8);
+    check(bytes, |(texture, mut corners, [eye, light], options): Drawn| {
+        corners.truncate(48);
+        let vector = |v: [Number; 3]| Vec3::from(v.map(Number::get));
+        let positions = corners.iter().map(|corner| vector(corner.0)).collect();
+        let tex_coords = corners.iter().map(|corner| Vec2::from(corner.1.map(Number::get))).collect();
+        let triangles = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let surface = Some(Arc::new(texture.surface()));
+        let scene = Scene {
+            meshes: vec![Mesh::new(positions, tex_coords, vec![], triangles)],
+            materials: vec![Material { surface, ..Material::default() }],
+            camera: Camera { eye: vector(eye), ..Camera::default() },
+            lights: vec![Light::Point { position: vector(light), intensity: Vec3::ONE }],
+            ..Scene::default()
+        };
+        let settings = texture.settings();
+        let filters = [settings.filter, Filter::Parallax, Filter::Truth, Filter::Horizon];
+        hold(frame_is_finite(
+            scene,
+            Settings {
+                width: 24,
+                height: 16,
+                samples: 2,
+                filter: filters[usize::from(options >> 4 & 3)],
+                lighting: if options & 1 == 0 { Lighting::Unlit } else { Lighting::Lit },
+                msaa: [1, 4, 8, 4][usize::from(options >> 1 & 3)],
+                ..settings
+            },
+        ));
+    });
+}
+
+#[derive(Arbitrary, Debug)]
+enum Word<'a> {
+    /// An option or a word that it takes, by number.
+    Known(u8),
+    Numbers([Number; 3], u8),
+    Text(&'a str),
+    Bytes(&'a [u8]),
+}
+
+/// All options, and all words that they take.
+static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let mut words = Cli::words();
+    words.extend(["compare", "inspect", "render", "study", "64x36"].map(str::to_owned));
+    words
+});
+
+impl Word<'_> {
+    fn argument(self) -> OsString {
+        match self {
+            Self::Known(i) => KNOWN[usize::from(i) % KNOWN.len()].clone().into(),
+            Self::Numbers(numbers, num) => {
+                let numbers = numbers.map(|n| n.get().to_string());
+                numbers[..1 + usize::from(num % 3)].join(",").into()
+            }
+            Self::Text(text) => text.into(),
+            Self::Bytes(bytes) => os_string(bytes),
+        }
+    }
+}
+
+#[cfg(unix)]
+fn os_string(bytes: &[u8]) -> OsString {
+    std::os::unix::ffi::OsStringExt::from_vec(bytes.to_vec())
+}
+
+#[cfg(not(unix))]
+fn os_string(bytes: &[u8]) -> OsString {
+    String::from_utf8_lossy(bytes).into_owned().into()
+}
+
+/// Any command line: help, a refusal of one line, or options with which a small scene is drawn or
+/// refused. Reads and writes no file.
+pub fn command_line(bytes: &[u8]) {
+    check(bytes, |words: Vec<Word>| {
+        let words = words.into_iter().map(Word::argument);
+        let cli = match Cli::read(std::iter::once("basrelief".into()).chain(words)) {
+            Ok(cli) => cli,
+            Err(Ending::Refused(refusal)) => {
+                let line = refusal.to_string();
+                return assert!(!line.contains('\n') && !line.is_empty(), "not one line: {line}");
+            }
+            Err(Ending::Help(help)) => return assert!(!help.to_string().is_empty()),
+        };
+        let mut scene = floor();
+        let Ok(Some(settings)) = cli.picture(&mut scene) else { return };
+        let (width, height) = (settings.width.min(16), settings.height.min(12));
+        let samples = settings.samples.min(4);
+        let small = Settings { width, height, samples, region: None, ..settings };
+        hold(frame_is_finite(scene, small));
+    });
+}
