@@ -7,23 +7,12 @@ mod common;
 
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
 use basrelief::{
-    Derivatives, Filter, Formulas, Frame, Light, Lighting, Material, Mesh, Region, Renderer, Scene, Settings,
-    Visibility,
+    Derivatives, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material, Mesh, Rays, Region, Renderer, Scene,
+    Settings, Trilinear, Visibility, Visible,
 };
 use common::{cobbles, floor_scene};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
-
-const FILTERS: [Filter; 8] = [
-    Filter::Nearest,
-    Filter::Bilinear,
-    Filter::Trilinear,
-    Filter::Ewa,
-    Filter::Visible,
-    Filter::Horizon,
-    Filter::Parallax,
-    Filter::Truth,
-];
 
 /// A relief floor of `size` texels, a mirrored relief wall that cuts it, and a plain triangle, under two lights.
 fn scene(wrap: Wrap, size: u32) -> Scene {
@@ -55,7 +44,21 @@ fn scene(wrap: Wrap, size: u32) -> Scene {
 }
 
 fn small(filter: Filter) -> Settings {
-    Settings { width: 45, height: 37, filter, samples: 4, texel_budget: 64, msaa: 1, ..Settings::default() }
+    Settings { width: 45, height: 37, filter, msaa: 1, ..Settings::default() }
+}
+
+/// What small frames are drawn with: less work than by default.
+fn with_small_options(filter: Filter) -> (&'static str, Filter) {
+    match filter {
+        Filter::Nearest => ("Nearest", filter),
+        Filter::Bilinear => ("Bilinear", filter),
+        Filter::Trilinear(_) => ("Trilinear", filter),
+        Filter::Ewa(ewa) => ("Ewa", Filter::Ewa(Ewa { texel_budget: 64, ..ewa })),
+        Filter::Visible(visible) => ("Visible", Filter::Visible(Visible { texel_budget: 64, ..visible })),
+        Filter::Horizon(_) => ("Horizon", filter),
+        Filter::Parallax(_) => ("Parallax", Filter::Parallax(Rays { samples: 4 })),
+        Filter::Truth(_) => ("Truth", Filter::Truth(Rays { samples: 4 })),
+    }
 }
 
 /// A name, what lies beyond the textures' edges, texels a side of the floor's, and settings.
@@ -64,44 +67,55 @@ type Case = (String, Wrap, u32, Settings);
 /// Every filter and every option, one frame each.
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for filter in FILTERS {
+    for (name, filter) in Filter::ALL.map(with_small_options) {
         for (lighting, msaa) in [(Lighting::Unlit, 1), (Lighting::Lit, 4)] {
-            let name = format!("{filter:?} {lighting:?} msaa {msaa}");
+            let name = format!("{name} {lighting:?} msaa {msaa}");
             cases.push((name, Wrap::Repeat, 64, Settings { lighting, msaa, ..small(filter) }));
         }
     }
     let mut add = |name: &str, wrap, settings| cases.push((name.into(), wrap, 64, settings));
-    for filter in [Filter::Trilinear, Filter::Ewa, Filter::Visible, Filter::Horizon] {
-        add(&format!("{filter:?} mirror"), Wrap::Mirror, small(filter));
-        add(&format!("{filter:?} clamp"), Wrap::Clamp, small(filter));
-        add(&format!("{filter:?} flat"), Wrap::Repeat, Settings { parallax: false, ..small(filter) });
-        add(&format!("{filter:?} anisotropy 4"), Wrap::Repeat, Settings { max_anisotropy: 4.0, ..small(filter) });
+    let ewa = Ewa { texel_budget: 64, ..Ewa::default() };
+    let visible = Visible { texel_budget: 64, ..Visible::default() };
+    let horizon = Horizon::default();
+    let trilinear = Filter::Trilinear(Trilinear::default());
+    for (name, filter, narrow) in [
+        ("Trilinear", trilinear, trilinear),
+        ("Ewa", Filter::Ewa(ewa), Filter::Ewa(Ewa { max_anisotropy: 4.0, ..ewa })),
+        ("Visible", Filter::Visible(visible), Filter::Visible(Visible { max_anisotropy: 4.0, ..visible })),
+        ("Horizon", Filter::Horizon(horizon), Filter::Horizon(Horizon { max_anisotropy: 4.0, ..horizon })),
+    ] {
+        add(&format!("{name} mirror"), Wrap::Mirror, small(filter));
+        add(&format!("{name} clamp"), Wrap::Clamp, small(filter));
+        add(&format!("{name} flat"), Wrap::Repeat, Settings { parallax: false, ..small(filter) });
+        add(&format!("{name} anisotropy 4"), Wrap::Repeat, small(narrow));
     }
     for (lighting, cut) in [(Lighting::Unlit, 1.0), (Lighting::Lit, 1.5)] {
-        let settings = Settings { every_texel: true, lighting, cut, ..small(Filter::Ewa) };
+        let filter = Filter::Ewa(Ewa { every_texel: true, cut, ..ewa });
+        let settings = Settings { lighting, ..small(filter) };
         add(&format!("Ewa {lighting:?}, every texel, cut {cut}"), Wrap::Repeat, settings);
     }
-    let visible = small(Filter::Visible);
-    add("two-ended", Wrap::Repeat, Settings { visibility: Visibility::TwoEnded, ..visible.clone() });
-    add("resolved", Wrap::Repeat, Settings { visibility: Visibility::Resolved, ..visible.clone() });
-    add("flat derivatives", Wrap::Repeat, Settings { derivatives: Derivatives::Flat, ..visible.clone() });
-    add("printed", Wrap::Repeat, Settings { formulas: Formulas::Printed, ..visible.clone() });
-    let printed = Settings { derivatives: Derivatives::Flat, formulas: Formulas::Printed, ..visible.clone() };
-    add("printed, flat derivatives", Wrap::Repeat, printed);
-    add("base level", Wrap::Repeat, Settings { texel_budget: 0, ..visible.clone() });
-    add("culled, msaa 8", Wrap::Repeat, Settings { cull_back_faces: true, msaa: 8, ..visible });
-    let horizon = small(Filter::Horizon);
-    add("4 lines", Wrap::Repeat, Settings { lines: 4, ..horizon.clone() });
-    add("64 lines, near field", Wrap::Repeat, Settings { lines: 64, far_field: false, ..horizon.clone() });
+    let mut add_visible = |name: &str, visible| add(name, Wrap::Repeat, small(Filter::Visible(visible)));
+    let (flat, printed) = (Derivatives::Flat, Formulas::Printed);
+    add_visible("two-ended", Visible { visibility: Visibility::TwoEnded, ..visible });
+    add_visible("resolved", Visible { visibility: Visibility::Resolved, ..visible });
+    add_visible("flat derivatives", Visible { derivatives: flat, ..visible });
+    add_visible("printed", Visible { formulas: printed, ..visible });
+    add_visible("printed, flat derivatives", Visible { derivatives: flat, formulas: printed, ..visible });
+    add_visible("base level", Visible { texel_budget: 0, ..visible });
+    let culled = Settings { cull_back_faces: true, msaa: 8, ..small(Filter::Visible(visible)) };
+    add("culled, msaa 8", Wrap::Repeat, culled);
+    add("4 lines", Wrap::Repeat, small(Filter::Horizon(Horizon { lines: 4, ..horizon })));
+    let near = Filter::Horizon(Horizon { lines: 64, far_field: false, ..horizon });
+    add("64 lines, near field", Wrap::Repeat, small(near));
     let default = Settings { width: 45, height: 37, ..Settings::default() };
     add("default", Wrap::Repeat, default.clone());
     add("default, lit", Wrap::Repeat, Settings { lighting: Lighting::Lit, ..default });
     // Only maps of more than 128 x 128 texels have tables of what is seen from afar.
-    cases.push(("far field".into(), Wrap::Repeat, 200, Settings { far_field_mib: 1, ..horizon.clone() }));
-    cases.push(("far field, mirror".into(), Wrap::Mirror, 130, horizon));
+    cases.push(("far field".into(), Wrap::Repeat, 200, small(Filter::Horizon(Horizon { far_field_mib: 1, ..horizon }))));
+    cases.push(("far field, mirror".into(), Wrap::Mirror, 130, small(Filter::Horizon(horizon))));
     // Texels a side that are no power of two wrap by a division.
-    for filter in [Filter::Trilinear, Filter::Ewa] {
-        cases.push((format!("{filter:?}, 50 texels"), Wrap::Repeat, 50, small(filter)));
+    for (name, filter) in [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa))] {
+        cases.push((format!("{name}, 50 texels"), Wrap::Repeat, 50, small(filter)));
     }
     cases
 }
@@ -148,12 +162,12 @@ fn frames_do_not_depend_on_threads_and_tiles() {
 fn frames_of_any_size_do_not_depend_on_threads_and_tiles() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(7).build().expect("a pool");
     for (width, height) in [(1, 1), (2, 1), (1, 7), (8, 8), (9, 17), (31, 33), (65, 3)] {
-        for filter in FILTERS {
+        for (name, filter) in Filter::ALL.map(with_small_options) {
             let settings = Settings { width, height, ..small(filter) };
             let case = |tile_size| (String::new(), Wrap::Repeat, 64, Settings { tile_size, ..settings.clone() });
             let expected = draw(&case(32));
             let other = pool.install(|| draw(&case(8)));
-            assert!(expected == other, "{filter:?} at {width} x {height}");
+            assert!(expected == other, "{name} at {width} x {height}");
         }
     }
 }

@@ -94,8 +94,8 @@ impl Filter {
     /// Where the rays of a pixel go; `None` for a filter that takes a footprint for a pixel.
     pub fn samples(&self) -> Option<SampleOffsets> {
         match self {
-            Self::Parallax(Rays { samples }) => Some(SampleOffsets::new(&parallax::offsets(*samples))),
-            Self::Truth(Rays { samples }) => Some(SampleOffsets::new(&truth::offsets(*samples))),
+            Self::Parallax(Rays { samples }) => Some(SampleOffsets::new(&parallax::offsets(*samples), false)),
+            Self::Truth(Rays { samples }) => Some(SampleOffsets::new(&truth::offsets(*samples), true)),
             Self::Nearest
             | Self::Bilinear
             | Self::Trilinear(_)

@@ -171,7 +171,9 @@ impl<'a> Shader<'a> {
                 let batch = Batch { pixels: &[rays], lights: &[], is_fine: false };
                 self.count(self.settings.filter.colors(ground.prepared, &batch, &mut scratch.filter, &mut filtered));
                 for i in rays.covered() {
-                    let lights = self.lights_at(pair, lane, [x.as_array()[i], y.as_array()[i]]);
+                    let own = [x.as_array()[i], y.as_array()[i]];
+                    let place = if samples.is_lit_apart { own } else { [center_x, center_y] };
+                    let lights = self.lights_at(pair, lane, place);
                     sum += self.lit(ground, &filtered[0].lane(i), lights.as_ref());
                     num += 1.0;
                 }
