@@ -1,7 +1,7 @@
 //! Loading: what is read, how it is read, and what is refused with which words.
 
 use basrelief::Error;
-use basrelief::scene::{
+use basrelief::load::{
     HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY, load, load_obj_bytes, load_reporting,
 };
 use basrelief::texture::{Surface, Wrap};

@@ -1,7 +1,7 @@
 //! Any bytes as an MTL file: materials or an error of one line.
 #![no_main]
 
-use basrelief::scene::load_mtl_bytes;
+use basrelief::load::load_mtl_bytes;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     if let Err(error) = load_mtl_bytes(bytes) {

@@ -1,7 +1,7 @@
 //! Any bytes as an OBJ file: a valid scene or an error of one line.
 #![no_main]
 
-use basrelief::scene::{LoadOptions, load_obj_bytes};
+use basrelief::load::{LoadOptions, load_obj_bytes};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     match load_obj_bytes(bytes, &LoadOptions::default()) {

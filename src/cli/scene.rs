@@ -7,9 +7,9 @@ use super::file_values::{self, PointLight, Spelt, Sun};
 use super::progress::Progress;
 use super::settings::refusal;
 use super::{Refusal, values};
-use basrelief::scene::{self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY};
+use basrelief::load::{self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY};
 use basrelief::texture::Wrap;
-use basrelief::{Camera, Light, Scene};
+use basrelief::{Camera, Light, Scene, scene};
 use clap::Args;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -160,7 +160,7 @@ impl SceneOptions {
     pub(super) fn load(&self, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
         let report = |stage: LoadStage| progress.stage(stage.to_string());
         let mut loaded = match &self.model {
-            Some(obj) => scene::load_reporting(obj, &self.load_options(is_lit), &report).map_err(|e| refusal(&e))?,
+            Some(obj) => load::load_reporting(obj, &self.load_options(is_lit), &report).map_err(|e| refusal(&e))?,
             None if self.has_maps() => return Err("materials are given, but no model (OBJ file) that has them".into()),
             None => built_in(),
         };

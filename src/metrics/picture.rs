@@ -1,8 +1,8 @@
 //! A picture as it is looked at: sRGB-encoded values.
 
+use crate::decode::{self, ImageLimits};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
-use crate::scene::decode::{self, ImageLimits};
 use crate::texture::srgb_from_linear;
 use image::{ColorType, DynamicImage};
 use rayon::prelude::*;

@@ -7,7 +7,11 @@ mod arch;
 mod noise;
 mod stones;
 
-use super::{Camera, Light, Material, Mesh, Scene};
+use crate::scene::camera::Camera;
+use crate::scene::light::Light;
+use crate::scene::material::Material;
+use crate::scene::mesh::Mesh;
+use crate::scene::whole::Scene;
 use crate::texture::{Surface, SurfaceMaps};
 use arch::Arch;
 use glam::{Vec2, Vec3};

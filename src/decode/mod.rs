@@ -3,11 +3,17 @@
 //! A file is opened only when it is a regular one, its head is checked against the limits before anything is allocated,
 //! and a panic of its decoder is a refusal.
 
-use super::contain::contain;
-use super::files;
-use super::gray_exr::GrayExr;
-use super::samples::Samples;
+mod contain;
+mod file;
+mod gray_exr;
+mod samples;
+
+pub(crate) use contain::contain;
+pub(crate) use file::{open_regular, plain};
+pub(crate) use samples::{Channel, Samples};
+
 use crate::error::{Error, Result};
+use gray_exr::GrayExr;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
@@ -55,12 +61,12 @@ pub(crate) fn image_bytes(bytes: &[u8], path: &Path, limits: ImageLimits) -> Res
 }
 
 /// Decodes an image file to its samples.
-pub(super) fn decode(path: &Path, limits: ImageLimits) -> Result<Samples> {
+pub(crate) fn decode(path: &Path, limits: ImageLimits) -> Result<Samples> {
     run(path, || samples(image_from(open(path, limits)?, path, limits)?))
 }
 
 /// Decodes an image in memory; `path` serves for messages and for formats without a signature.
-pub(super) fn decode_bytes(bytes: &[u8], path: &Path, limits: ImageLimits) -> Result<Samples> {
+pub(crate) fn decode_bytes(bytes: &[u8], path: &Path, limits: ImageLimits) -> Result<Samples> {
     run(path, || samples(image_from(std::io::Cursor::new(bytes), path, limits)?))
 }
 
@@ -71,7 +77,7 @@ fn run<T>(path: &Path, work: impl FnOnce() -> std::result::Result<T, String>) ->
 }
 
 fn open(path: &Path, limits: ImageLimits) -> std::result::Result<BufReader<File>, String> {
-    let file = files::open(path).map_err(|error| match error {
+    let file = open_regular(path).map_err(|error| match error {
         Error::File { reason, .. } => reason,
         other => other.to_string(),
     })?;

@@ -11,7 +11,7 @@ thread_local! {
 static HOOK: Once = Once::new();
 
 /// Runs `work`; a panic inside becomes `None` and prints nothing. Other threads' panics are reported as before.
-pub(super) fn contain<T>(work: impl FnOnce() -> T) -> Option<T> {
+pub(crate) fn contain<T>(work: impl FnOnce() -> T) -> Option<T> {
     HOOK.call_once(|| {
         let before = panic::take_hook();
         panic::set_hook(Box::new(move |info| {

@@ -3,12 +3,10 @@
 //! Height: the caller's file, else `disp`/`map_disp`, else `bump`/`map_bump` when that image is gray. A coloured bump is
 //! a normal map, as `norm`/`map_Kn` is. Every choice is put into words.
 
-use super::decode;
-use super::files::{self, Folder};
-use super::load::{HeightSense, LoadOptions, MaterialOptions, NormalY};
+use super::files::Folder;
 use super::mtl::{MtlMaterial, TextureRef};
-use super::surfaces::image_limits;
-use super::texture_line::Channel;
+use super::options::{HeightSense, LoadOptions, MaterialOptions, NormalY};
+use crate::decode::{self, Channel, open_regular, plain};
 use crate::error::{Error, Result};
 use crate::texture::Wrap;
 use rayon::prelude::*;
@@ -143,7 +141,7 @@ impl<'a> Planner<'a> {
                 format!("the scene names {} texture files, more than {}", paths.len(), self.options.max_textures);
             return Err(Error::setting("max_textures", reason));
         }
-        let limits = image_limits(self.options);
+        let limits = self.options.image_limits();
         let is_gray: Vec<Result<bool>> = paths
             .par_iter()
             .map(|path| Ok(decode::probe(path, limits)?.is_gray_format() || decode::decode(path, limits)?.is_gray()))
@@ -268,6 +266,6 @@ fn with_real_paths(given: &MaterialOptions) -> Result<MaterialOptions> {
 
 /// The path of a file that the caller named.
 fn real_path(path: &Path) -> Result<PathBuf> {
-    files::open(path)?;
-    fs::canonicalize(path).map_err(|error| Error::file(path, files::plain(&error)))
+    open_regular(path)?;
+    fs::canonicalize(path).map_err(|error| Error::file(path, plain(&error)))
 }

@@ -1,30 +1,7 @@
-//! Which files a scene may read: regular files only, and inside the scene's folder unless the caller allows more.
+//! Which files a scene may read: regular files inside the scene's folder unless the caller allows more.
 
-use crate::error::{Error, Result};
-use std::fs::{self, File};
-use std::io;
+use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Opens a regular file; devices, pipes and folders are refused before they are opened, since a pipe would block.
-pub(super) fn open(path: &Path) -> Result<File> {
-    let refuse = |reason: io::Error| Error::file(path, plain(&reason));
-    let check = |kind: fs::Metadata| {
-        if kind.is_file() { Ok(()) } else { Err(Error::file(path, "not a regular file")) }
-    };
-    check(fs::metadata(path).map_err(refuse)?)?;
-    let file = File::open(path).map_err(refuse)?;
-    check(file.metadata().map_err(refuse)?)?;
-    Ok(file)
-}
-
-/// The system's words without its error number.
-pub(super) fn plain(error: &io::Error) -> String {
-    match error.kind() {
-        io::ErrorKind::NotFound => "no such file".into(),
-        io::ErrorKind::PermissionDenied => "permission denied".into(),
-        _ => error.to_string(),
-    }
-}
 
 /// The folder that a scene's files must lie in.
 #[derive(Clone, Debug)]
@@ -49,7 +26,7 @@ impl Folder {
     ///
     /// # Errors
     /// Says why what lies outside the folder, or is no regular file, is refused.
-    pub(super) fn resolve(&self, name: &str, named_in: &Path) -> std::result::Result<Option<PathBuf>, String> {
+    pub(super) fn resolve(&self, name: &str, named_in: &Path) -> Result<Option<PathBuf>, String> {
         let Some(root) = &self.root else {
             return Ok(None);
         };

@@ -1,14 +1,18 @@
 //! MTL files, through tobj, to materials whose texture lines are taken apart.
 
-use super::files::{self, Folder};
+mod lines;
+mod texture_line;
+
+use super::files::Folder;
 use super::lines::{CleanLines, Place};
-use super::mtl_lines::{LineNumbers, MtlLines};
-use super::texture_line::TextureLine;
+use crate::decode::{contain, open_regular};
 use crate::error::{Error, Result};
+use lines::{LineNumbers, MtlLines};
 use std::collections::HashSet;
 use std::io::{BufRead, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use texture_line::TextureLine;
 
 /// Largest MTL file that is read in bytes, and most materials: real ones have a few hundred kilobytes.
 const MAX_MTL_BYTES: u64 = 16 << 20;
@@ -119,7 +123,7 @@ impl MtlFiles {
     }
 
     fn read_file(&mut self, path: &Path) -> Result<TobjMaterials> {
-        let file = files::open(path)?;
+        let file = open_regular(path)?;
         if file.metadata().is_ok_and(|data| data.len() > MAX_MTL_BYTES) {
             return Err(Error::file(path, format!("more than {} MiB are no material file", MAX_MTL_BYTES >> 20)));
         }
@@ -130,7 +134,7 @@ impl MtlFiles {
     pub(super) fn read_text(&mut self, text: impl BufRead, path: &Path) -> Result<TobjMaterials> {
         let cleaner = MtlLines::default();
         let mut lines = CleanLines::new(text, path, cleaner);
-        let read = super::contain::contain(|| tobj::load_mtl_buf(&mut lines));
+        let read = contain(|| tobj::load_mtl_buf(&mut lines));
         if let Some(failure) = lines.failure.take() {
             return Err(failure);
         }

@@ -4,11 +4,10 @@
 //! one [`Surface`], small ones in parallel too. What all of that needs is estimated from the heads of the files before any
 //! is decoded.
 
-use super::decode::{self, ImageInfo, ImageLimits};
-use super::load::LoadOptions;
+use super::options::LoadOptions;
 use super::plan::{Kind, Map, Plan};
-use super::samples::Samples;
 use super::stage::{Counter, LoadStage, Report};
+use crate::decode::{self, ImageInfo, ImageLimits, Samples};
 use crate::error::{Error, Result};
 use crate::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps};
 use rayon::prelude::*;
@@ -32,15 +31,6 @@ enum MapImage {
     Normal(NormalImage),
 }
 
-/// The limits of one image.
-pub(super) fn image_limits(options: &LoadOptions) -> ImageLimits {
-    ImageLimits {
-        side: options.max_image_side.min(32768),
-        texels: u64::MAX,
-        bytes: u64::from(options.max_image_mib) << 20,
-    }
-}
-
 /// The surface of each plan; equal plans share one.
 ///
 /// # Errors
@@ -55,7 +45,7 @@ pub(super) fn build(
         let reason = format!("the scene names {} texture files, more than {}", files.len(), options.max_textures);
         return Err(Error::setting("max_textures", reason));
     }
-    let limits = image_limits(options);
+    let limits = options.image_limits();
     let paths: Vec<&Path> = files.keys().copied().collect();
     let infos: Vec<_> = paths.par_iter().map(|path| decode::probe(path, limits)).collect();
     let infos: Vec<ImageInfo> = infos.into_iter().collect::<Result<_>>()?;

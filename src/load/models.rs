@@ -1,8 +1,8 @@
 //! tobj's models to meshes with texture coordinates as the materials scale them, normals and tangents.
 
-use super::Mesh;
-use super::locate::{MAX_POSITION, MAX_REPEATS};
 use super::mtl::{MtlMaterial, TextureRef};
+use super::obj::locate::{MAX_POSITION, MAX_REPEATS};
+use crate::scene::Mesh;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 

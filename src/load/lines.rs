@@ -12,6 +12,12 @@ use std::path::{Path, PathBuf};
 /// Longest line that is read: a polygon of a million corners fits, a binary file without line ends does not fill memory.
 const MAX_LINE_BYTES: usize = 32 << 20;
 
+/// Where the OBJ's text comes from; it is read again only to find the line of an error.
+pub(super) trait Source {
+    fn path(&self) -> &Path;
+    fn reader(&self) -> Result<Box<dyn BufRead + '_>>;
+}
+
 /// What a cleaner does with a line.
 pub(super) trait Clean {
     /// Appends what tobj shall see of `text` to `out`, each line ended by `\n`; nothing leaves the line out.

@@ -2,37 +2,27 @@
 //!
 //! Options may stand before or after the name, the name may hold spaces, and backslashes are turned into slashes.
 
-/// Which channel of an image serves as the height (`-imfchan`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Channel {
-    Red,
-    Green,
-    Blue,
-    /// The alpha channel; 1 everywhere in an image without one.
-    Matte,
-    /// Rec. 709 luma of the stored values.
-    Luma,
-}
+use crate::decode::Channel;
 
 /// A texture line taken apart.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct TextureLine {
+pub(in crate::load) struct TextureLine {
     /// The file's name with forward slashes, as far as it is relative to the file that names it.
-    pub(super) name: String,
+    pub(in crate::load) name: String,
     /// `-bm`: relief depth, or strength of a normal map.
-    pub(super) bump: Option<f32>,
+    pub(in crate::load) bump: Option<f32>,
     /// `-s`: repeats along u and v.
-    pub(super) scale: [f32; 2],
+    pub(in crate::load) scale: [f32; 2],
     /// `-o`: shift along u and v, in repeats.
-    pub(super) offset: [f32; 2],
+    pub(in crate::load) offset: [f32; 2],
     /// `-mm`: base and gain.
-    pub(super) range: [f32; 2],
+    pub(in crate::load) range: [f32; 2],
     /// `-clamp on`.
-    pub(super) is_clamped: bool,
+    pub(in crate::load) is_clamped: bool,
     /// `-imfchan`.
-    pub(super) channel: Option<Channel>,
+    pub(in crate::load) channel: Option<Channel>,
     /// Options that have no effect here, by name.
-    pub(super) unsupported: Vec<String>,
+    pub(in crate::load) unsupported: Vec<String>,
 }
 
 impl TextureLine {
@@ -54,7 +44,7 @@ impl TextureLine {
     ///
     /// # Errors
     /// Names the option whose value is wrong.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
+    pub(in crate::load) fn parse(text: &str) -> Result<Self, String> {
         let words: Vec<&str> = text.split_whitespace().collect();
         let mut line = Self::plain();
         let mut first = 0;

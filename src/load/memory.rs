@@ -1,10 +1,11 @@
 //! The loaders on bytes in memory, for fuzzing: what a hostile file reaches, without the file system.
 
-use super::decode::{self, ImageLimits};
+use super::assemble::{Loaded, load_from};
 use super::files::Folder;
-use super::load::{LoadOptions, Loaded, load_from};
+use super::lines::Source;
 use super::mtl::MtlFiles;
-use super::obj::Source;
+use super::options::LoadOptions;
+use crate::decode::{self, ImageLimits};
 use crate::error::Result;
 use std::io::BufRead;
 use std::path::Path;
