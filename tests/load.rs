@@ -102,6 +102,27 @@ fn polygons_become_fans_with_normals_and_tangents() {
 }
 
 #[test]
+fn made_normals_know_no_seams_and_edges_by_the_crease_angle() {
+    // A roof of 90 degrees whose ridge, from (0, 1, 0) to (0, 1, 1), has its own texture coordinates on either side.
+    let faces = "usemtl a\nf 1/1 3/3 4/4 2/2\nusemtl b\nf 1/5 2/6 6/4 5/3\n";
+    let obj = "mtllib s.mtl\nv 0 1 0\nv 0 1 1\nv -1 0 0\nv -1 0 1\nv 1 0 0\nv 1 0 1\n\
+               vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvt 5 0\nvt 6 0\n";
+    let mut files = Files::new(&format!("{obj}{faces}"), "newmtl a\n\nnewmtl b\n");
+    for (crease_angle, at_ridge) in [(60.0, [-1.0, 1.0]), (90.0, [0.0, 0.0])] {
+        files.options.crease_angle = crease_angle;
+        let meshes = files.load().scene.meshes;
+        for (mesh, x) in meshes.iter().zip(at_ridge) {
+            let ridge = mesh.positions.iter().zip(&mesh.normals).filter(|(p, _)| p.y == 1.0);
+            assert!(ridge.map(|(_, normal)| normal.x / normal.y).all(|slope| (slope - x).abs() < 1e-6), "{meshes:?}");
+        }
+    }
+    for crease_angle in [-1.0, 180.5, f32::NAN] {
+        files.options.crease_angle = crease_angle;
+        assert!(files.try_load().unwrap_err().to_string().contains("crease_angle"), "{crease_angle}");
+    }
+}
+
+#[test]
 fn negative_indices_count_from_the_end() {
     let mesh = &Files::new("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n", "").load().scene.meshes[0];
     assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);

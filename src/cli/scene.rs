@@ -22,6 +22,9 @@ pub(crate) struct SceneOptions {
     /// options override; without one, a built-in scene
     #[arg(value_name = "SCENE")]
     pub(super) model: Option<PathBuf>,
+    /// Where SCENE has no normals: faces that meet at more than this angle, 0 to 180 degrees, show an edge [default: 60]
+    #[arg(long, value_name = "DEG", value_parser = values::crease_angle, allow_hyphen_values = true, requires = "model")]
+    pub(super) crease_angle: Option<f32>,
     #[command(flatten)]
     pub(super) all_materials: MapOptions,
     /// Options of single materials by name; only scene files give them.
@@ -192,6 +195,7 @@ impl SceneOptions {
             all: maps.material(),
             materials: self.material.iter().map(|(name, maps)| (name.clone(), maps.material())).collect(),
             keep_normals: is_lit,
+            crease_angle: self.crease_angle.unwrap_or(default.crease_angle),
             allow_outside: limits.allow_outside.unwrap_or(default.allow_outside),
             max_image_side: limits.max_image_side.unwrap_or(default.max_image_side),
             max_image_mib: limits.max_image_mib.unwrap_or(default.max_image_mib),
@@ -312,7 +316,14 @@ mod tests {
 
     #[test]
     fn options_of_files_need_a_file() {
-        for line in ["--height a.png", "--wrap clamp", "--allow-outside", "--relief-depth 0.1", "--max-textures 3"] {
+        for line in [
+            "--height a.png",
+            "--wrap clamp",
+            "--allow-outside",
+            "--relief-depth 0.1",
+            "--max-textures 3",
+            "--crease-angle 0",
+        ] {
             assert!(parse(line).err().unwrap().contains("SCENE"), "{line}");
             assert!(parse(&format!("a.obj {line}")).is_ok(), "{line}");
         }

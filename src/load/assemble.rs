@@ -31,7 +31,8 @@ pub struct Loaded {
 /// Reads an OBJ file with its MTL files and images.
 ///
 /// A missing MTL or texture that a file names is a warning, and the plain colour is drawn. Meshes without texture
-/// coordinates are drawn in their plain colour too. Normals are made where the file has none.
+/// coordinates are drawn in their plain colour too. Normals are made where the file has none, see
+/// [`LoadOptions::crease_angle`].
 ///
 /// # Errors
 /// Names the file, and the line where one is wrong, or the option or limit that refuses it.
@@ -70,6 +71,9 @@ pub(super) fn load_from(
     if depths.any(|depth| depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth))) {
         return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
     }
+    if !(0.0..=180.0).contains(&options.crease_angle) {
+        return Err(Error::setting("crease_angle", "must be within 0 to 180 degrees"));
+    }
     report(LoadStage::Model);
     let mtl = RefCell::new(MtlFiles::new(source.path(), folder));
     let models = obj::read(source, options.max_triangles, &mtl)?;
@@ -81,7 +85,8 @@ pub(super) fn load_from(
         );
     }
     models::remark_placements(&materials, &mut warnings);
-    let meshes = models::finish(meshes, &materials).map_err(|reason| Error::file(source.path(), reason))?;
+    let meshes = models::finish(meshes, &materials, options.crease_angle)
+        .map_err(|reason| Error::file(source.path(), reason))?;
     if meshes.iter().any(|mesh| mesh.material == materials.len()) {
         materials.push(MtlMaterial { name: "none".into(), ..MtlMaterial::default() });
     }

@@ -10,6 +10,7 @@ mod lines;
 mod memory;
 mod models;
 mod mtl;
+mod normals;
 mod obj;
 mod options;
 mod plan;

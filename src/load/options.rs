@@ -79,6 +79,9 @@ pub struct LoadOptions {
     pub materials: BTreeMap<String, MaterialOptions>,
     /// Whether surfaces keep normals, which only lighting needs. Default: `false`.
     pub keep_normals: bool,
+    /// Where normals are made, faces that meet at a sharper angle than this keep their own: degrees, 0 (every edge is
+    /// sharp) to 180 (none is). Default: 60.
+    pub crease_angle: f32,
     /// Whether files that lie outside the OBJ's folder, also by a link, may be read when a material names them.
     /// Files that the caller names may lie anywhere. Default: `false`.
     pub allow_outside: bool,
@@ -99,6 +102,7 @@ impl Default for LoadOptions {
             all: MaterialOptions::default(),
             materials: BTreeMap::new(),
             keep_normals: false,
+            crease_angle: 60.0,
             allow_outside: false,
             max_image_side: 32768,
             max_image_mib: 1024,
