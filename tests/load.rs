@@ -516,7 +516,7 @@ fn textures_outside_the_folder_need_permission() {
     files.image("a.png", one(1, 2, 3));
     let load = |options: &LoadOptions| load(&files.path("scene/s.obj"), options);
     let text = load(&options).expect_err("refused").to_string();
-    assert!(text.contains("s.mtl:2: '../a.png' lies outside") && text.contains("--allow-outside"), "{text}");
+    assert!(text.contains("s.mtl:2: '../a.png' lies outside") && text.contains("(allow_outside)"), "{text}");
     options.allow_outside = true;
     assert!(load(&options).expect("loads").scene.materials[0].surface.is_some());
     options.allow_outside = false;

@@ -47,7 +47,7 @@ pub(super) fn run(options: &CompareOptions) -> Result<ExitCode, Refusal> {
 
 fn refusal([a, b]: [&PathBuf; 2], error: &Error) -> Refusal {
     let reason = match error {
-        Error::Scene { reason, .. } => reason.clone(),
+        Error::Picture { reason, .. } => reason.clone(),
         _ => error.to_string(),
     };
     format!("{} and {}: {reason}", a.display(), b.display())

@@ -36,7 +36,7 @@ pub(super) fn run(options: &JoinOptions) -> Result<ExitCode, Refusal> {
     output::write_by(&options.output, |sink| {
         let sink = BufWriter::with_capacity(1 << 20, sink);
         write_png(sink, &head, (0..height).map(|y| rows.row(y))).map_err(|e| match e {
-            Error::Scene { reason, .. } => format!("{}: {reason}", options.output.display()),
+            Error::Picture { reason, .. } => format!("{}: {reason}", options.output.display()),
             e => e.to_string(),
         })
     })?;

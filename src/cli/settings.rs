@@ -196,15 +196,13 @@ pub(crate) fn refusal(error: &Error) -> Refusal {
         Error::Scene { part, reason } if part == "camera" => {
             format!("the camera (--eye, --target, --up, --fov, --near): {reason}")
         }
-        _ => with_options(error.to_string()),
+        Error::Limit { option, .. } => {
+            let text = error.to_string();
+            let reason = text.strip_suffix(&format!("({option})")).unwrap_or(&text);
+            format!("{reason}({})", option_of(option))
+        }
+        _ => error.to_string(),
     }
-}
-
-/// Fields of the load options that messages about files name.
-const LIMITS: &[&str] = &["max_image_side", "max_image_mib", "max_triangles", "max_textures", "max_pixels"];
-
-fn with_options(text: String) -> Refusal {
-    LIMITS.iter().fold(text, |text, field| text.replace(field, &option_of(field)))
 }
 
 /// The option that sets a field of [`Settings`] or of the load options.

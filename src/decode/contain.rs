@@ -1,29 +1,10 @@
 //! Contains panics of decoders and parsers that we did not write: a hostile file must not end the caller's process.
 
-use std::cell::Cell;
-use std::panic::{self, AssertUnwindSafe};
-use std::sync::Once;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
-thread_local! {
-    static IS_CONTAINED: Cell<bool> = const { Cell::new(false) };
-}
-
-static HOOK: Once = Once::new();
-
-/// Runs `work`; a panic inside becomes `None` and prints nothing. Other threads' panics are reported as before.
+/// Runs `work`; a panic inside becomes `None`. What is printed of it is up to the process's panic hook.
 pub(crate) fn contain<T>(work: impl FnOnce() -> T) -> Option<T> {
-    HOOK.call_once(|| {
-        let before = panic::take_hook();
-        panic::set_hook(Box::new(move |info| {
-            if !IS_CONTAINED.get() {
-                before(info);
-            }
-        }));
-    });
-    let was_contained = IS_CONTAINED.replace(true);
-    let result = panic::catch_unwind(AssertUnwindSafe(work)).ok();
-    IS_CONTAINED.set(was_contained);
-    result
+    catch_unwind(AssertUnwindSafe(work)).ok()
 }
 
 #[cfg(test)]

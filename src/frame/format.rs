@@ -72,7 +72,7 @@ pub(super) fn encode<P: Pixel>(frame: &Frame<P>, format: Format, part: Option<Pa
         }
         _ => encode_bytes(frame, format, has_opacity),
     }
-    .map_err(|e| Error::scene("frame", e))
+    .map_err(|e| Error::picture_caused("frame", e))
 }
 
 fn encode_bytes<P: Pixel>(frame: &Frame<P>, format: Format, has_opacity: bool) -> ImageResult<Vec<u8>> {

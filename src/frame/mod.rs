@@ -103,7 +103,7 @@ impl<P: Pixel> Frame<P> {
     /// As [`Frame::encode`].
     pub fn encode_part(&self, format: Format, part: Option<Part>) -> Result<Vec<u8>> {
         if self.pixels.len() as u64 != u64::from(self.width) * u64::from(self.height) || self.pixels.is_empty() {
-            return Err(Error::scene("frame", "the number of pixels must be width times height and above 0"));
+            return Err(Error::picture("frame", "the number of pixels must be width times height and above 0"));
         }
         format::encode(self, format, part)
     }

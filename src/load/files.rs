@@ -1,5 +1,7 @@
 //! Which files a scene may read: regular files inside the scene's folder unless the caller allows more.
 
+use super::lines::Place;
+use crate::error::Result;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -22,23 +24,18 @@ impl Folder {
         Self { root: None, allow_outside: false }
     }
 
-    /// The absolute path without links of the file `name` that the file `named_in` asks for; `None` when it is missing.
+    /// The absolute path without links of the file `name` that the line `at` asks for; `None` when it is missing.
     ///
     /// # Errors
     /// Says why what lies outside the folder, or is no regular file, is refused.
-    pub(super) fn resolve(&self, name: &str, named_in: &Path) -> Result<Option<PathBuf>, String> {
-        let Some(root) = &self.root else {
-            return Ok(None);
-        };
-        let path = parent(named_in).join(name);
-        let Ok(real) = fs::canonicalize(&path) else {
-            return Ok(None);
-        };
+    pub(super) fn resolve(&self, name: &str, at: Place<'_>) -> Result<Option<PathBuf>> {
+        let Some(root) = &self.root else { return Ok(None) };
+        let Ok(real) = fs::canonicalize(parent(at.path).join(name)) else { return Ok(None) };
         if !self.allow_outside && !real.starts_with(root) {
-            return Err(format!("'{name}' lies outside the scene's folder; --allow-outside reads it all the same"));
+            return Err(at.refuse_limit(format!("'{name}' lies outside the scene's folder"), "allow_outside"));
         }
         if !real.is_file() {
-            return Err(format!("'{name}' is not a regular file"));
+            return Err(at.refuse(format!("'{name}' is not a regular file")));
         }
         Ok(Some(real))
     }

@@ -34,7 +34,12 @@ pub(super) struct Place<'a> {
 impl Place<'_> {
     /// A refusal of this line.
     pub(super) fn refuse(self, reason: impl ToString) -> Error {
-        Error::Line { path: self.path.into(), line: self.line, reason: reason.to_string() }
+        Error::File { path: self.path.into(), line: Some(self.line), reason: reason.to_string(), source: None }
+    }
+
+    /// A refusal of this line, which asks for more than `option` allows.
+    pub(super) fn refuse_limit(self, reason: impl ToString, option: &'static str) -> Error {
+        Error::Limit { path: self.path.into(), line: Some(self.line), reason: reason.to_string(), option }
     }
 
     /// A one-line remark about this line.
@@ -100,7 +105,7 @@ impl<R: BufRead, C: Clean> CleanLines<R, C> {
     fn read_physical_line(&mut self) -> Result<bool> {
         let room = MAX_LINE_BYTES.saturating_sub(self.raw.len());
         let read = (&mut self.inner).take(room as u64).read_until(b'\n', &mut self.raw);
-        let num = read.map_err(|reason| Error::file(&self.path, reason))?;
+        let num = read.map_err(|reason| Error::caused(&self.path, reason))?;
         if num == room {
             return Err(self.place().refuse("the line is too long for a text file"));
         }

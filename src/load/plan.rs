@@ -6,7 +6,7 @@
 use super::files::Folder;
 use super::mtl::{MtlMaterial, TextureRef};
 use super::options::{HeightSense, LoadOptions, MaterialOptions, NormalY};
-use crate::decode::{self, Channel, open_regular, plain};
+use crate::decode::{self, Channel, open_regular};
 use crate::error::{Error, Result};
 use crate::texture::Wrap;
 use rayon::prelude::*;
@@ -128,7 +128,7 @@ impl<'a> Planner<'a> {
         let mut paths = BTreeSet::new();
         for material in materials {
             let Some(bump) = material.bump.as_ref().filter(|bump| bump.texture.channel.is_none()) else { continue };
-            let find = |map: &TextureRef| self.folder.resolve(&map.texture.name, &map.path).ok().flatten();
+            let find = |map: &TextureRef| self.folder.resolve(&map.texture.name, map.place()).ok().flatten();
             let has_height = self.given(material).height.is_some() || material.height.as_ref().and_then(find).is_some();
             // Where both height and normals are settled without it, the image need not be read.
             if !has_height || self.wants_normals(material) {
@@ -144,7 +144,7 @@ impl<'a> Planner<'a> {
         let limits = self.options.image_limits();
         let is_gray: Vec<Result<bool>> = paths
             .par_iter()
-            .map(|path| Ok(decode::probe(path, limits)?.is_gray_format() || decode::decode(path, limits)?.is_gray()))
+            .map(|path| Ok(decode::probe(path, limits)?.is_gray_format() || decode::samples(path, limits)?.is_gray()))
             .collect();
         for (path, is_gray) in paths.into_iter().zip(is_gray) {
             self.is_gray.insert(path, is_gray?);
@@ -188,7 +188,7 @@ impl<'a> Planner<'a> {
             return Ok(None);
         };
         let name = &texture.texture.name;
-        let path = self.folder.resolve(name, &texture.path).map_err(|reason| texture.place().refuse(reason))?;
+        let path = self.folder.resolve(name, texture.place())?;
         if path.is_none() {
             let text = format_args!("{} '{name}' is missing; drawn without it", texture.keyword);
             self.warnings.push(texture.place().remark(text));
@@ -267,5 +267,5 @@ fn with_real_paths(given: &MaterialOptions) -> Result<MaterialOptions> {
 /// The path of a file that the caller named.
 fn real_path(path: &Path) -> Result<PathBuf> {
     open_regular(path)?;
-    fs::canonicalize(path).map_err(|error| Error::file(path, plain(&error)))
+    fs::canonicalize(path).map_err(|error| Error::caused(path, error))
 }

@@ -132,7 +132,7 @@ fn check_memory(plans: &BTreeSet<Plan>, infos: &BTreeMap<&Path, ImageInfo>, opti
 }
 
 fn decode_all(path: &Path, kinds: &BTreeSet<&Kind>, limits: ImageLimits) -> Result<Vec<(Map, MapImage)>> {
-    let samples = decode::decode(path, limits)?;
+    let samples = decode::samples(path, limits)?;
     let map = |kind: &Kind| (Map { path: path.into(), kind: kind.clone() }, convert(&samples, kind));
     Ok(kinds.iter().map(|kind| map(kind)).collect())
 }

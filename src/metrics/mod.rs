@@ -69,7 +69,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Result<Difference> {
     let rows: Vec<RowSums> = (0..a.height()).into_par_iter().map(|y| RowSums::of(a, b, y)).collect();
     let total = rows.into_iter().fold(RowSums::default(), RowSums::then);
     if total.num_compared == 0 {
-        return Err(Error::scene("pictures", "no pixel is opaque in both"));
+        return Err(Error::picture("pictures", "no pixel is opaque in both"));
     }
     let mean = total.squares / (total.num_compared as f64 * 3.0);
     Ok(Difference {
@@ -86,7 +86,7 @@ fn check_sizes(a: &Picture, b: &Picture) -> Result<()> {
         return Ok(());
     }
     let sizes = format!("{}x{} and {}x{} pixels", a.width(), a.height(), b.width(), b.height());
-    Err(Error::scene("pictures", format!("sizes differ: {sizes}")))
+    Err(Error::picture("pictures", format!("sizes differ: {sizes}")))
 }
 
 /// Whether a pixel takes part in a comparison.

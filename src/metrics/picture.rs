@@ -26,7 +26,7 @@ impl Picture {
     /// Says so when the number of pixels is not width times height, or 0.
     pub fn new(width: u32, height: u32, mut pixels: Vec<[f32; 4]>) -> Result<Self> {
         if pixels.len() as u64 != u64::from(width) * u64::from(height) || pixels.is_empty() {
-            return Err(Error::scene("picture", "the number of pixels must be width times height and above 0"));
+            return Err(Error::picture("picture", "the number of pixels must be width times height and above 0"));
         }
         pixels.iter_mut().flatten().for_each(|value| *value = clamped(*value));
         Ok(Self { width, height, pixels })
@@ -49,15 +49,8 @@ impl Picture {
         Self::of_image(decode::image(path, limits(max_pixels))?)
     }
 
-    /// Decodes an image file from memory, as [`Picture::open`] does; `name` is for messages, and its extension tells a TGA.
-    ///
-    /// # Errors
-    /// As [`Picture::open`].
-    pub fn from_bytes(bytes: &[u8], name: impl AsRef<Path>) -> Result<Self> {
-        Self::from_bytes_within(bytes, name.as_ref(), Self::MAX_PIXELS)
-    }
-
-    pub(crate) fn from_bytes_within(bytes: &[u8], name: &Path, max_pixels: u64) -> Result<Self> {
+    /// Decodes an image file in memory; `name` is for messages, and its extension tells a TGA.
+    pub(crate) fn from_bytes(bytes: &[u8], name: &Path, max_pixels: u64) -> Result<Self> {
         Self::of_image(decode::image_bytes(bytes, name, limits(max_pixels))?)
     }
 

@@ -54,6 +54,8 @@ pub(super) struct MtlMaterial {
 /// All MTL files that an OBJ names.
 pub(super) struct MtlFiles {
     obj: PathBuf,
+    /// The line of the OBJ that was read last and names MTL files.
+    pub(super) line: usize,
     folder: Folder,
     pub(super) materials: Vec<MtlMaterial>,
     pub(super) warnings: Vec<String>,
@@ -78,7 +80,7 @@ impl MtlFiles {
     pub(super) fn new(obj: &Path, folder: &Folder) -> Self {
         let (materials, warnings) = (Vec::new(), Vec::new());
         let (obj, folder) = (obj.into(), folder.clone());
-        Self { obj, folder, materials, warnings, failure: None, known: HashSet::new(), files: HashSet::new() }
+        Self { obj, line: 0, folder, materials, warnings, failure: None, known: HashSet::new(), files: HashSet::new() }
     }
 
     /// Reads what an `mtllib` line names: one file with spaces in its name, or several. Failures are kept.
@@ -103,8 +105,7 @@ impl MtlFiles {
     /// The files behind the names, each as it is to be shown; those read before are left out.
     fn find(&mut self, names: &str) -> Result<Vec<PathBuf>> {
         let names = names.trim_matches('"');
-        let resolve =
-            |name: &str| self.folder.resolve(name, &self.obj).map_err(|reason| Error::file(&self.obj, reason));
+        let resolve = |name: &str| self.folder.resolve(name, Place { path: &self.obj, line: self.line });
         if let Some(path) = resolve(names)? {
             return Ok(self.files.insert(path).then(|| self.obj.with_file_name(names)).into_iter().collect());
         }

@@ -70,7 +70,7 @@ impl<'a> ObjLines<'a> {
         };
         *num += 1;
         if *num > self.max_triangles {
-            return Err(at.refuse(format!("more than {} vertices (max_triangles)", self.max_triangles)));
+            return Err(at.refuse_limit(format!("more than {} vertices", self.max_triangles), "max_triangles"));
         }
         Ok(())
     }
@@ -82,7 +82,7 @@ impl<'a> ObjLines<'a> {
         }
         self.num_triangles += scan.num - 2;
         if self.num_triangles > self.max_triangles {
-            return Err(at.refuse(format!("more than {} triangles (max_triangles)", self.max_triangles)));
+            return Err(at.refuse_limit(format!("more than {} triangles", self.max_triangles), "max_triangles"));
         }
         let corners = self.note(&scan, at.line);
         if self.corners.replace(corners).is_some_and(|before| before != corners) {
@@ -214,7 +214,12 @@ impl Clean for ObjLines<'_> {
                 self.name = rest.trim().into();
                 let _ = writeln!(out, "o {}", self.name);
             }
-            "mtllib" => _ = writeln!(out, "mtllib {}", rest.trim()),
+            "mtllib" => {
+                if let Some(mtl) = self.mtl {
+                    mtl.borrow_mut().line = at.line;
+                }
+                let _ = writeln!(out, "mtllib {}", rest.trim());
+            }
             "usemtl" if !rest.trim().is_empty() => {
                 if let Some(mtl) = self.mtl {
                     mtl.borrow_mut().remark_unknown(rest.trim(), at);

@@ -46,7 +46,7 @@ fn refusal(error: tobj::LoadError, place: Place<'_>, source: &dyn Source) -> Err
         E::NormalParseError => "'vn' needs three numbers",
         E::FaceParseError => "a face needs corners such as 1, 1/2, 1//3 or 1/2/3",
         E::FaceVertexOutOfBounds | E::FaceTexCoordOutOfBounds | E::FaceNormalOutOfBounds => {
-            return locate::bad_index(source).unwrap_or_else(|| Error::file(source.path(), error));
+            return locate::bad_index(source).unwrap_or_else(|| Error::caused(source.path(), error));
         }
         _ => return place.refuse(error),
     };
