@@ -26,7 +26,10 @@ fn library_checks_frames() {
         let golden = folder.path("golden").join(name);
         let mut frame = Frame::filled(20, 10, [0.3, 0.2, 0.1, 1.0]);
         let missing = check(&golden, &frame, exact, Fail).unwrap_err().to_string();
-        assert!(missing.contains(name) && missing.contains("no golden image") && missing.contains("failed"), "{missing}");
+        assert!(
+            missing.contains(name) && missing.contains("no golden image") && missing.contains("failed"),
+            "{missing}"
+        );
         assert_eq!(names(&folder, "golden/failed"), [name.replace("floor.", "floor.actual.")]);
         frame.save(&golden).unwrap();
         check(&golden, &frame, exact, Fail).unwrap();
@@ -46,7 +49,8 @@ fn library_checks_frames() {
         assert!(!folder.path("golden/failed").exists(), "what is accepted has not failed");
         check(&golden, &frame, exact, Fail).unwrap();
     }
-    let other = check(folder.path("golden/floor.png"), &Frame::filled(3, 2, [1.0; 4]), exact, Fail).unwrap_err().to_string();
+    let other =
+        check(folder.path("golden/floor.png"), &Frame::filled(3, 2, [1.0; 4]), exact, Fail).unwrap_err().to_string();
     assert!(other.contains("20x10") && other.contains("3x2"), "{other}");
 }
 
