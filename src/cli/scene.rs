@@ -9,7 +9,7 @@ use super::settings::refusal;
 use super::{Refusal, values};
 use basrelief::load::{self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY};
 use basrelief::texture::Wrap;
-use basrelief::{Camera, Light, Scene, scene};
+use basrelief::{Camera, Light, Scene, Settings, scene};
 use clap::Args;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -160,10 +160,12 @@ impl SceneOptions {
     }
 
     /// Reads or makes the scene and sets what the options say.
-    pub(super) fn load(&self, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
+    pub(super) fn load(&self, settings: &Settings, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
         let report = |stage: LoadStage| progress.stage(stage.to_string());
         let mut loaded = match &self.model {
-            Some(obj) => load::load_reporting(obj, &self.load_options(is_lit), &report).map_err(|e| refusal(&e))?,
+            Some(obj) => {
+                load::load_reporting(obj, &self.load_options(settings, is_lit), &report).map_err(|e| refusal(&e))?
+            }
             None if self.has_maps() => return Err("materials are given, but no model (OBJ file) that has them".into()),
             None => built_in(),
         };
@@ -188,13 +190,14 @@ impl SceneOptions {
     }
 
     /// How that file is read.
-    pub(crate) fn load_options(&self, is_lit: bool) -> LoadOptions {
+    pub(crate) fn load_options(&self, settings: &Settings, is_lit: bool) -> LoadOptions {
         let (maps, limits) = (&self.all_materials, &self.limits);
         let default = LoadOptions::default();
         LoadOptions {
             all: maps.material(),
             materials: self.material.iter().map(|(name, maps)| (name.clone(), maps.material())).collect(),
             keep_normals: is_lit,
+            aspect: settings.width as f32 / settings.height as f32,
             crease_angle: self.crease_angle.unwrap_or(default.crease_angle),
             allow_outside: limits.allow_outside.unwrap_or(default.allow_outside),
             max_image_side: limits.max_image_side.unwrap_or(default.max_image_side),
@@ -284,7 +287,7 @@ mod tests {
 
     #[test]
     fn camera_keeps_what_is_not_given() {
-        let mut camera = Camera::framing(Vec3::ZERO, Vec3::ONE);
+        let mut camera = Camera::framing(Vec3::ZERO, Vec3::ONE, 1.0);
         let framing = camera;
         parse("--eye -1,2,-3 --fov 30").unwrap().camera.place(&mut camera);
         assert_eq!(camera, Camera { eye: Vec3::new(-1.0, 2.0, -3.0), fov_degrees: 30.0, ..framing });
@@ -311,7 +314,8 @@ mod tests {
 
     #[test]
     fn no_options_are_the_defaults_of_the_library() {
-        assert_eq!(parse("").unwrap().load_options(false), LoadOptions::default());
+        let square = Settings { width: 5, height: 5, ..Settings::default() };
+        assert_eq!(parse("").unwrap().load_options(&square, false), LoadOptions::default());
     }
 
     #[test]

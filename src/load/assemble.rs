@@ -74,6 +74,9 @@ pub(super) fn load_from(
     if !(0.0..=180.0).contains(&options.crease_angle) {
         return Err(Error::setting("crease_angle", "must be within 0 to 180 degrees"));
     }
+    if !(options.aspect > 0.0 && options.aspect.is_finite()) {
+        return Err(Error::setting("aspect", "must be above 0"));
+    }
     report(LoadStage::Model);
     let mtl = RefCell::new(MtlFiles::new(source.path(), folder));
     let models = obj::read(source, options.max_triangles, &mtl)?;
@@ -100,7 +103,7 @@ pub(super) fn load_from(
         Material { surface, ..plain_material(material, &own.or(&options.all)) }
     });
     let mut scene = Scene { meshes, materials: materials.collect(), ..Scene::default() };
-    frame(&mut scene);
+    frame(&mut scene, options.aspect);
     scene.validate()?;
     let mut seen = HashSet::new();
     warnings.retain(|warning| seen.insert(warning.clone()));
@@ -153,10 +156,10 @@ fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
 }
 
 /// A camera that sees all of the scene, and light from over its left shoulder.
-fn frame(scene: &mut Scene) {
+fn frame(scene: &mut Scene, aspect: f32) {
     let points = || scene.meshes.iter().flat_map(|mesh| &mesh.positions);
     let (min, max) = points().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| (min.min(*p), max.max(*p)));
-    scene.camera = Camera::framing(min, max);
+    scene.camera = Camera::framing(min, max, aspect);
     let [right, up, forward] = scene.camera.axes();
     let to_light = up * 0.8 - right * 0.6 - forward * 0.6;
     scene.lights = vec![Light::Directional { to_light, intensity: Vec3::splat(0.85) }];

@@ -79,6 +79,9 @@ pub struct LoadOptions {
     pub materials: BTreeMap<String, MaterialOptions>,
     /// Whether surfaces keep normals, which only lighting needs. Default: `false`.
     pub keep_normals: bool,
+    /// Width over height of the picture that the camera frames the scene for, above 0; wider pictures show all of it,
+    /// too. Default: 1.
+    pub aspect: f32,
     /// Where normals are made, faces that meet at a sharper angle than this keep their own: degrees, 0 (every edge is
     /// sharp) to 180 (none is). Default: 60.
     pub crease_angle: f32,
@@ -102,6 +105,7 @@ impl Default for LoadOptions {
             all: MaterialOptions::default(),
             materials: BTreeMap::new(),
             keep_normals: false,
+            aspect: 1.0,
             crease_angle: 60.0,
             allow_outside: false,
             max_image_side: 32768,
