@@ -508,6 +508,24 @@ fn a_huge_image_is_refused_before_it_is_decoded() {
 }
 
 #[test]
+fn refusals_keep_their_cause() {
+    use std::error::Error as _;
+    let missing = load(Path::new("none.obj"), &LoadOptions::default()).expect_err("refused");
+    assert_eq!(missing.to_string(), "none.obj: no such file");
+    let cause =
+        missing.source().and_then(|cause| cause.downcast_ref::<std::io::Error>()).expect("an error of the system");
+    assert_eq!(cause.kind(), std::io::ErrorKind::NotFound);
+    let files = Files::quad("map_Kd a.png");
+    files.write("a.png", "no picture");
+    let damaged = files.try_load().expect_err("refused");
+    assert!(damaged.source().is_some_and(|cause| cause.is::<image::ImageError>()), "{damaged}");
+    let large = Files::new(&"v 0 0 0\n".repeat(3), "");
+    let options = LoadOptions { max_triangles: 2, ..LoadOptions::default() };
+    let large = load(&large.path("s.obj"), &options).expect_err("refused");
+    assert!(matches!(large, Error::Limit { line: Some(3), option: "max_triangles", .. }), "{large:?}");
+}
+
+#[test]
 fn textures_outside_the_folder_need_permission() {
     let files = Files::new("", "");
     let mut options = LoadOptions::default();

@@ -25,7 +25,6 @@ pub struct Part {
 impl Part {
     /// What the text chunks of a PNG file, keywords and texts, say of it; `None` where they say nothing, or nothing that
     /// fits its size.
-    #[must_use]
     pub fn of_chunks<'a>(
         [width, height]: [u32; 2],
         chunks: impl IntoIterator<Item = (&'a str, &'a str)>,

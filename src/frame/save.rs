@@ -55,7 +55,6 @@ impl WholeFile {
     }
 
     /// Where the bytes lie until the file is finished; `None` for devices and pipes.
-    #[must_use]
     pub fn temporary_path(&self) -> Option<&Path> {
         match &self.sink {
             Sink::Temporary { file, .. } => Some(file.path()),

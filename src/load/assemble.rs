@@ -67,16 +67,7 @@ pub(super) fn load_from(
     options: &LoadOptions,
     report: &Report,
 ) -> Result<Loaded> {
-    let mut depths = options.materials.values().chain([&options.all]).map(|given| given.relief_depth);
-    if depths.any(|depth| depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth))) {
-        return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
-    }
-    if !(0.0..=180.0).contains(&options.crease_angle) {
-        return Err(Error::setting("crease_angle", "must be within 0 to 180 degrees"));
-    }
-    if !(options.aspect > 0.0 && options.aspect.is_finite()) {
-        return Err(Error::setting("aspect", "must be above 0"));
-    }
+    options.check()?;
     report(LoadStage::Model);
     let mtl = RefCell::new(MtlFiles::new(source.path(), folder));
     let models = obj::read(source, options.max_triangles, &mtl)?;

@@ -1,6 +1,7 @@
 //! How a scene is read: what the caller says of materials, and limits.
 
 use crate::decode::ImageLimits;
+use crate::error::{Error, Result};
 use crate::texture::Wrap;
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -53,7 +54,6 @@ pub struct MaterialOptions {
 
 impl MaterialOptions {
     /// These options, and those of `other` where these say nothing.
-    #[must_use]
     pub fn or(self, other: &Self) -> Self {
         Self {
             albedo: self.albedo.or_else(|| other.albedo.clone()),
@@ -117,6 +117,21 @@ impl Default for LoadOptions {
 }
 
 impl LoadOptions {
+    /// Refuses values out of their ranges.
+    pub(super) fn check(&self) -> Result<()> {
+        let mut given = self.materials.values().chain([&self.all]);
+        if given.any(|material| material.relief_depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth))) {
+            return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
+        }
+        if !(0.0..=180.0).contains(&self.crease_angle) {
+            return Err(Error::setting("crease_angle", "must be within 0 to 180 degrees"));
+        }
+        if !(self.aspect > 0.0 && self.aspect.is_finite()) {
+            return Err(Error::setting("aspect", "must be above 0"));
+        }
+        Ok(())
+    }
+
     /// The limits of one image.
     pub(super) fn image_limits(&self) -> ImageLimits {
         ImageLimits {

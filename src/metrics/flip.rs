@@ -6,7 +6,7 @@
 //! distance, with the Hunt effect. Edges and points, found in the unblurred lightness, raise the error where only one
 //! picture has them: `error = colour ^ (1 - feature)`. Constants are the paper's.
 
-use super::{Picture, check_sizes, is_compared};
+use super::picture::{Picture, check_sizes, is_compared};
 use crate::error::{Error, Result};
 use crate::texture::linear_from_srgb;
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 //! The ramp runs from black over violet, red and orange to pale yellow. Its lightness in Oklab (B. Ottosson, 2020) grows
 //! evenly with the error, so that equal steps of error look equally large, to the colour-blind too.
 
-use super::{Picture, check_sizes, is_compared};
+use super::picture::{Picture, check_sizes, is_compared};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 use rayon::prelude::*;

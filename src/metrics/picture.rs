@@ -66,19 +66,16 @@ impl Picture {
     }
 
     /// Pixels a row.
-    #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
     /// Rows.
-    #[must_use]
     pub fn height(&self) -> u32 {
         self.height
     }
 
     /// All pixels, row by row from the top.
-    #[must_use]
     pub fn pixels(&self) -> &[[f32; 4]] {
         &self.pixels
     }
@@ -104,6 +101,20 @@ impl From<&Frame> for Picture {
         pixels.resize(frame.width as usize * frame.height as usize, [0.0; 4]);
         Self { width: frame.width, height: frame.height, pixels }
     }
+}
+
+/// Refuses pictures of different sizes.
+pub(super) fn check_sizes(a: &Picture, b: &Picture) -> Result<()> {
+    if (a.width(), a.height()) == (b.width(), b.height()) {
+        return Ok(());
+    }
+    let sizes = format!("{}x{} and {}x{} pixels", a.width(), a.height(), b.width(), b.height());
+    Err(Error::picture("pictures", format!("sizes differ: {sizes}")))
+}
+
+/// Whether a pixel takes part in a comparison.
+pub(super) fn is_compared(a: [f32; 4], b: [f32; 4]) -> bool {
+    a[3] >= 1.0 && b[3] >= 1.0
 }
 
 /// What an image of `texels` pixels may need. The widest sample format has 16 bytes a pixel.

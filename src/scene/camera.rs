@@ -51,7 +51,6 @@ impl Camera {
     }
 
     /// The axes of view space in world space: right, up and forward, each of length one.
-    #[must_use]
     pub fn axes(&self) -> [Vec3; 3] {
         let forward = (self.target - self.eye).normalize();
         let right = forward.cross(self.up).normalize();
@@ -59,7 +58,6 @@ impl Camera {
     }
 
     /// Pixels per unit of `x / w` and `y / w`, where `w` is the distance along the view, for a frame `height` pixels high (pixels are square).
-    #[must_use]
     pub fn focal_pixels(&self, height: u32) -> f32 {
         (f64::from(height) * 0.5 / self.tan_half_fov()) as f32
     }

@@ -28,7 +28,6 @@ pub struct Mesh {
 impl Mesh {
     /// A mesh from its triangles; makes normals (area-weighted) where `normals` is empty, and tangents always. Triangles that
     /// name vertices that do not exist add nothing to either; the renderer refuses them.
-    #[must_use]
     pub fn new(positions: Vec<Vec3>, tex_coords: Vec<Vec2>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let mut mesh = Self { positions, tex_coords, normals, triangles, ..Self::default() };
         if mesh.normals.is_empty() {

@@ -64,17 +64,6 @@ pub(super) struct MtlFiles {
     files: HashSet<PathBuf>,
 }
 
-/// What `tobj` takes materials as, whose kind of map it does not name.
-pub(super) type TobjMaterials = <tobj::MTLLoadResult as Successful>::Value;
-
-pub(super) trait Successful {
-    type Value;
-}
-
-impl<T, E> Successful for std::result::Result<T, E> {
-    type Value = T;
-}
-
 impl MtlFiles {
     /// No materials yet, for the OBJ file `obj`.
     pub(super) fn new(obj: &Path, folder: &Folder) -> Self {
@@ -83,23 +72,17 @@ impl MtlFiles {
         Self { obj, line: 0, folder, materials, warnings, failure: None, known: HashSet::new(), files: HashSet::new() }
     }
 
-    /// Reads what an `mtllib` line names: one file with spaces in its name, or several. Failures are kept.
-    pub(super) fn read(&mut self, names: &Path) -> TobjMaterials {
+    /// Reads what an `mtllib` line names: one file with spaces in its name, or several. Failures are kept. tobj counts the
+    /// materials that it is handed and finds them by name; what is in them it need not know.
+    pub(super) fn read(&mut self, names: &Path) -> tobj::MTLLoadResult {
         let before = self.materials.len();
-        let result = self.find(&names.to_string_lossy().replace('\\', "/")).and_then(|paths| {
-            paths.iter().try_fold(TobjMaterials::default(), |mut all, path| {
-                let (materials, map) = self.read_file(path)?;
-                let offset = all.0.len();
-                all.0.extend(materials);
-                all.1.extend(map.into_iter().map(|(name, i)| (name, i + offset)));
-                Ok(all)
-            })
-        });
-        result.unwrap_or_else(|failure| {
+        let files = self.find(&names.to_string_lossy().replace('\\', "/"));
+        if let Err(failure) = files.and_then(|files| files.iter().try_for_each(|file| self.read_file(file))) {
             self.failure.get_or_insert(failure);
             self.materials.truncate(before);
-            TobjMaterials::default()
-        })
+        }
+        let names = self.materials[before..].iter().map(|material| material.name.clone());
+        Ok((vec![tobj::Material::default(); names.len()], names.zip(0..).collect()))
     }
 
     /// The files behind the names, each as it is to be shown; those read before are left out.
@@ -123,7 +106,7 @@ impl MtlFiles {
         Ok(found)
     }
 
-    fn read_file(&mut self, path: &Path) -> Result<TobjMaterials> {
+    fn read_file(&mut self, path: &Path) -> Result<()> {
         let file = open_regular(path)?;
         if file.metadata().is_ok_and(|data| data.len() > MAX_MTL_BYTES) {
             return Err(Error::file(path, format!("more than {} MiB are no material file", MAX_MTL_BYTES >> 20)));
@@ -132,15 +115,15 @@ impl MtlFiles {
     }
 
     /// Reads the text of one MTL file.
-    pub(super) fn read_text(&mut self, text: impl BufRead, path: &Path) -> Result<TobjMaterials> {
+    pub(super) fn read_text(&mut self, text: impl BufRead, path: &Path) -> Result<()> {
         let cleaner = MtlLines::default();
         let mut lines = CleanLines::new(text, path, cleaner);
         let read = contain(|| tobj::load_mtl_buf(&mut lines));
         if let Some(failure) = lines.failure.take() {
             return Err(failure);
         }
-        let (materials, map) = match read {
-            Some(Ok(read)) => read,
+        let materials = match read {
+            Some(Ok((materials, _))) => materials,
             Some(Err(error)) => return Err(lines.place().refuse(error)),
             None => return Err(lines.place().refuse("cannot be read")),
         };
@@ -154,7 +137,7 @@ impl MtlFiles {
             self.known.insert(material.name.clone());
             self.materials.push(material);
         }
-        Ok((materials, map))
+        Ok(())
     }
 
     fn take_apart(&mut self, from: &tobj::Material, lines: &LineNumbers, path: &Arc<Path>) -> Result<MtlMaterial> {

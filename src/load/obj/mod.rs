@@ -18,7 +18,7 @@ pub(super) fn read(source: &dyn Source, max_triangles: u64, mtl: &RefCell<MtlFil
     let cleaner = ObjLines::new(max_triangles, Some(mtl));
     let mut lines = CleanLines::new(source.reader()?, source.path(), cleaner);
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
-    let read = contain(|| tobj::load_obj_buf(&mut lines, &options, |name| Ok(mtl.borrow_mut().read(name))));
+    let read = contain(|| tobj::load_obj_buf(&mut lines, &options, |names| mtl.borrow_mut().read(names)));
     if let Some(failure) = lines.failure.take().or_else(|| mtl.borrow_mut().failure.take()) {
         return Err(failure);
     }

@@ -25,7 +25,6 @@ const ARCH_REPEAT: f32 = 1.8;
 const HORIZON: f32 = 1500.0;
 
 /// The embedded scene: cobbles and an arch under a low sun.
-#[must_use]
 pub fn builtin() -> Scene {
     let (street, arch) = rayon::join(|| surface(&street_style(), 1024, 0.06), || surface(&arch_style(), 512, 0.05));
     let materials = vec![
