@@ -108,15 +108,15 @@ impl Faces {
             corners.iter().zip(0..).map(|(&vertex, number)| (self.points[vertex as usize], number)).collect();
         by_point.par_sort_unstable();
         let least_cos = f64::from(crease_degrees).to_radians().cos() - TOLERANCE;
-        let around_points = by_point.par_chunk_by(|a, b| a.0 == b.0);
-        let found: Vec<(u32, Vec3)> = around_points
-            .flat_map_iter(|around| {
-                let corners = around.iter().filter_map(|&(_, number)| self.corner(number)).collect();
-                normals_at_point(corners, least_cos)
-            })
-            .collect();
+        let around_points = by_point.par_chunk_by(|a, b| a.0 == b.0).fold(Around::default, |mut around, at_point| {
+            around.corners.clear();
+            around.corners.extend(at_point.iter().filter_map(|&(_, number)| self.corner(number)));
+            around.add_normals(least_cos);
+            around
+        });
+        let found: Vec<Vec<(u32, Vec3)>> = around_points.map(|around| around.normals).collect();
         let mut normals = vec![Vec3::ZERO; corners.len()];
-        found.into_iter().for_each(|(number, normal)| normals[number as usize] = normal);
+        found.into_iter().flatten().for_each(|(number, normal)| normals[number as usize] = normal);
         normals
     }
 
@@ -149,39 +149,58 @@ fn points(positions: &[Vec3]) -> Vec<u32> {
     points
 }
 
-/// The normal of each corner at a point, by the corner's number.
-fn normals_at_point(mut corners: Vec<Corner>, least_cos: f64) -> Vec<(u32, Vec3)> {
-    // Sums are rounded: in this order they are the same whatever the order of the faces.
-    corners.sort_unstable_by(Corner::by_value);
-    let groups = smooth_groups(&corners, least_cos);
-    let mut sums = vec![DVec3::ZERO; corners.len()];
-    for (corner, &group) in corners.iter().zip(&groups) {
-        sums[group] += corner.normal * corner.angle;
-    }
-    let normal = |corner: &Corner, sum: DVec3| {
-        // Faces of two sides may cancel each other.
-        if sum.length() > TOLERANCE { sum.normalize() } else { corner.normal }
-    };
-    corners.iter().zip(groups).map(|(corner, group)| (corner.number, normal(corner, sums[group]).as_vec3())).collect()
+/// What is found at one point after another.
+#[derive(Default)]
+struct Around {
+    /// The corners at the point, and the first corner of the group that each is in.
+    corners: Vec<Corner>,
+    groups: Vec<usize>,
+    /// The other end of each corner's edges, and the corner.
+    edges: Vec<(u32, usize)>,
+    /// For the first corner of a group, its faces' normals times their angles.
+    sums: Vec<DVec3>,
+    /// The normals of all corners so far, with their numbers.
+    normals: Vec<(u32, Vec3)>,
 }
 
-/// The group of each corner: corners that hang together by smooth edges are in one, named by its first corner.
-fn smooth_groups(corners: &[Corner], least_cos: f64) -> Vec<usize> {
-    let mut edges: Vec<(u32, usize)> =
-        corners.iter().enumerate().flat_map(|(i, corner)| corner.ends.map(|end| (end, i))).collect();
-    edges.sort_unstable();
-    let mut groups: Vec<usize> = (0..corners.len()).collect();
-    for edge in edges.chunk_by(|a, b| a.0 == b.0).filter(|edge| edge.len() <= MOST_FACES) {
-        for (i, &(_, a)) in edge.iter().enumerate() {
-            for &(_, b) in &edge[..i] {
-                if corners[a].normal.dot(corners[b].normal) >= least_cos {
-                    let [a, b] = [a, b].map(|corner| first_of_group(&mut groups, corner));
-                    groups[a.max(b)] = a.min(b);
+impl Around {
+    /// Finds the normals of the corners at a point.
+    fn add_normals(&mut self, least_cos: f64) {
+        // Sums are rounded: in this order they are the same whatever the order of the faces.
+        self.corners.sort_unstable_by(Corner::by_value);
+        self.group_by_smooth_edges(least_cos);
+        self.sums.clear();
+        self.sums.resize(self.corners.len(), DVec3::ZERO);
+        for (i, corner) in self.corners.iter().enumerate() {
+            self.sums[first_of_group(&mut self.groups, i)] += corner.normal * corner.angle;
+        }
+        for (i, corner) in self.corners.iter().enumerate() {
+            let sum = self.sums[first_of_group(&mut self.groups, i)];
+            // Faces of two sides may cancel each other.
+            let normal = if sum.length() > TOLERANCE { sum.normalize() } else { corner.normal };
+            self.normals.push((corner.number, normal.as_vec3()));
+        }
+    }
+
+    /// Corners that hang together by smooth edges become one group.
+    fn group_by_smooth_edges(&mut self, least_cos: f64) {
+        let Self { corners, groups, edges, .. } = self;
+        edges.clear();
+        edges.extend(corners.iter().enumerate().flat_map(|(i, corner)| corner.ends.map(|end| (end, i))));
+        edges.sort_unstable();
+        groups.clear();
+        groups.extend(0..corners.len());
+        for edge in edges.chunk_by(|a, b| a.0 == b.0).filter(|edge| edge.len() <= MOST_FACES) {
+            for (i, &(_, a)) in edge.iter().enumerate() {
+                for &(_, b) in &edge[..i] {
+                    if corners[a].normal.dot(corners[b].normal) >= least_cos {
+                        let [a, b] = [a, b].map(|corner| first_of_group(groups, corner));
+                        groups[a.max(b)] = a.min(b);
+                    }
                 }
             }
         }
     }
-    (0..corners.len()).map(|corner| first_of_group(&mut groups, corner)).collect()
 }
 
 /// Follows `groups` to the first corner of a group, and shortens the way for those who follow it next.
