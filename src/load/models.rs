@@ -2,8 +2,7 @@
 
 use super::mtl::{MtlMaterial, TextureRef};
 use super::normals;
-use super::obj::locate::{MAX_POSITION, MAX_REPEATS};
-use crate::scene::Mesh;
+use crate::scene::{MAX_POSITION, MAX_REPEATS, Mesh};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 

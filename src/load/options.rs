@@ -132,6 +132,15 @@ impl LoadOptions {
         Ok(())
     }
 
+    /// Refuses more texture files than allowed.
+    pub(super) fn check_num_textures(&self, num: usize) -> Result<()> {
+        if num <= self.max_textures as usize {
+            return Ok(());
+        }
+        let reason = format!("the scene names {num} texture files, more than {}", self.max_textures);
+        Err(Error::setting("max_textures", reason))
+    }
+
     /// The limits of one image.
     pub(super) fn image_limits(&self) -> ImageLimits {
         ImageLimits {

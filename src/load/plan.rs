@@ -17,6 +17,9 @@ use std::path::{Path, PathBuf};
 /// Relief depth in texture repeats where nothing says otherwise.
 const DEFAULT_DEPTH: f32 = 0.05;
 
+/// In the order of plans.
+const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
+
 /// An image file and how it is read.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Map {
@@ -46,8 +49,9 @@ pub(super) struct Plan {
     albedo: Option<Map>,
     height: Option<Map>,
     normal: Option<Map>,
-    /// 0 repeat, 1 mirror, 2 clamp.
-    wrap: u8,
+    /// Index into [`WRAPS`].
+    wrap: usize,
+    /// The relief depth as bits.
     depth: u32,
 }
 
@@ -58,7 +62,7 @@ impl Plan {
     }
 
     pub(super) fn wrap(&self) -> Wrap {
-        [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp][usize::from(self.wrap)]
+        WRAPS[self.wrap]
     }
 
     /// Whether there is anything to take normals from.
@@ -100,7 +104,8 @@ impl<'a> Planner<'a> {
         let of_one = of_one.collect::<Result<_>>()?;
         let (is_gray, choices, warnings) = Default::default();
         let mut planner = Self { options, folder, of_all, of_one, is_gray, choices, warnings };
-        planner.note_replacements();
+        planner.note("every material", &options.all);
+        options.materials.iter().for_each(|(name, own)| planner.note(&format!("material {name}"), own));
         planner.look_at_bumps(materials)?;
         Ok(planner)
     }
@@ -109,13 +114,7 @@ impl<'a> Planner<'a> {
         self.of_one.get(material.name.as_str()).unwrap_or(&self.of_all)
     }
 
-    fn note_replacements(&mut self) {
-        self.note("every material", &self.options.all);
-        for (name, own) in &self.options.materials {
-            self.note(&format!("material {name}"), own);
-        }
-    }
-
+    /// Notes the files that the caller names.
     fn note(&mut self, whose: &str, given: &MaterialOptions) {
         for (what, path) in [("colour", &given.albedo), ("height", &given.height), ("normals", &given.normal)] {
             if let Some(path) = path {
@@ -124,6 +123,7 @@ impl<'a> Planner<'a> {
         }
     }
 
+    /// Finds out which images of `bump` lines are gray, where that decides what they serve as.
     fn look_at_bumps(&mut self, materials: &[&MtlMaterial]) -> Result<()> {
         let mut paths = BTreeSet::new();
         for material in materials {
@@ -136,11 +136,7 @@ impl<'a> Planner<'a> {
             }
         }
         let paths: Vec<_> = paths.into_iter().collect();
-        if paths.len() > self.options.max_textures as usize {
-            let reason =
-                format!("the scene names {} texture files, more than {}", paths.len(), self.options.max_textures);
-            return Err(Error::setting("max_textures", reason));
-        }
+        self.options.check_num_textures(paths.len())?;
         let limits = self.options.image_limits();
         let is_gray: Vec<Result<bool>> = paths
             .par_iter()
@@ -171,12 +167,9 @@ impl<'a> Planner<'a> {
         };
         let (height, depth, height_clamped) = self.height(material, bump_height)?;
         let normal = self.normal(material, bump_normal)?;
-        let wrap = self.given(material).wrap.unwrap_or(if albedo_clamped || height_clamped {
-            Wrap::Clamp
-        } else {
-            Wrap::Repeat
-        });
-        let wrap = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp].iter().position(|w| *w == wrap).unwrap_or_default() as u8;
+        let fallback = if albedo_clamped || height_clamped { Wrap::Clamp } else { Wrap::Repeat };
+        let wrap = self.given(material).wrap.unwrap_or(fallback);
+        let wrap = WRAPS.iter().position(|w| *w == wrap).unwrap_or_default();
         let plan = Plan { albedo, height, normal, wrap, depth: depth.to_bits() };
         let has_maps = plan.maps().next().is_some();
         Ok(has_maps.then_some(plan))

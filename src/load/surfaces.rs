@@ -25,6 +25,7 @@ const BUILD_BYTES: u64 = 8;
 /// threads, so that what is refused does not depend on the machine.
 const AT_ONCE: u64 = 1 << 23;
 
+#[derive(Clone)]
 enum MapImage {
     Color(ColorImage),
     Height(HeightImage),
@@ -41,10 +42,7 @@ pub(super) fn build(
     report: &Report,
 ) -> Result<BTreeMap<Plan, Arc<Surface>>> {
     let files = kinds_by_file(plans);
-    if files.len() > options.max_textures as usize {
-        let reason = format!("the scene names {} texture files, more than {}", files.len(), options.max_textures);
-        return Err(Error::setting("max_textures", reason));
-    }
+    options.check_num_textures(files.len())?;
     let limits = options.image_limits();
     let paths: Vec<&Path> = files.keys().copied().collect();
     let infos: Vec<_> = paths.par_iter().map(|path| decode::probe(path, limits)).collect();
@@ -157,7 +155,7 @@ fn surface_maps(
     let (wrap, relief_depth) = (plan.wrap(), plan.relief_depth());
     let mut maps = SurfaceMaps { wrap, relief_depth, keep_normals, ..SurfaceMaps::default() };
     for map in plan.maps() {
-        let image = if is_used_later(map) { images.get(map).map(MapImage::copy) } else { images.remove(map) };
+        let image = if is_used_later(map) { images.get(map).cloned() } else { images.remove(map) };
         match image {
             Some(MapImage::Color(image)) => maps.albedo = Some(image),
             Some(MapImage::Height(image)) => maps.height = Some(image),
@@ -166,14 +164,4 @@ fn surface_maps(
         }
     }
     maps
-}
-
-impl MapImage {
-    fn copy(&self) -> Self {
-        match self {
-            Self::Color(image) => Self::Color(image.clone()),
-            Self::Height(image) => Self::Height(image.clone()),
-            Self::Normal(image) => Self::Normal(image.clone()),
-        }
-    }
 }

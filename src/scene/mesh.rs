@@ -6,6 +6,11 @@
 
 use glam::{DVec3, Vec2, Vec3};
 
+/// Largest component of a position: products of larger ones leave the range of f32.
+pub(crate) const MAX_POSITION: f32 = 1e18;
+/// Largest texture coordinate in repeats: f32 has no texels left beyond.
+pub(crate) const MAX_REPEATS: f32 = 1e6;
+
 /// Triangles of one material.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
@@ -92,14 +97,14 @@ impl Mesh {
             return Err(format!("triangle {triangle:?} names a vertex of {num} that does not exist"));
         }
         // Compared by component: the largest component of a vector with NaN need not be NaN.
-        let is_bounded = |v: &Vec3| v.abs().cmple(Vec3::splat(1e18)).all();
+        let is_bounded = |v: &Vec3| v.abs().cmple(Vec3::splat(MAX_POSITION)).all();
         if !self.positions.iter().all(is_bounded) || !self.normals.iter().all(is_bounded) {
             return Err("positions and normals must be finite and within 1e18".into());
         }
         if !self.tangents.iter().flatten().all(|axis| axis.is_finite()) {
             return Err("tangents must be finite".into());
         }
-        if !self.tex_coords.iter().all(|t| t.abs().cmple(Vec2::splat(1e6)).all()) {
+        if !self.tex_coords.iter().all(|t| t.abs().cmple(Vec2::splat(MAX_REPEATS)).all()) {
             return Err("texture coordinates must be finite and within 1e6 repeats".into());
         }
         Ok(())

@@ -12,4 +12,5 @@ pub use camera::Camera;
 pub use light::Light;
 pub use material::Material;
 pub use mesh::Mesh;
+pub(crate) use mesh::{MAX_POSITION, MAX_REPEATS};
 pub use whole::Scene;

@@ -3,11 +3,7 @@
 use super::clean::ObjLines;
 use crate::error::{Error, Result};
 use crate::load::lines::{CleanLines, Source};
-
-/// Positions beyond this are refused: their products would leave the range of f32.
-pub(in crate::load) const MAX_POSITION: f32 = 1e18;
-/// Texture coordinates beyond this many repeats are refused: f32 has no texels left there.
-pub(in crate::load) const MAX_REPEATS: f32 = 1e6;
+use crate::scene::{MAX_POSITION, MAX_REPEATS};
 
 /// The first face with an index that its list does not have.
 pub(super) fn bad_index(source: &dyn Source) -> Option<Error> {
