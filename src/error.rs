@@ -1,28 +1,38 @@
-//! Everything that loading, saving or a wrong setting can be refused for.
+//! Everything that loading, saving, comparing or a wrong setting can be refused for.
 
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// An error of the system or of another crate.
+type Cause = Box<dyn std::error::Error + Send + Sync>;
 
 /// Why something was refused. Each text is one line that names the file, line, option or scene part.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A file cannot be read, decoded or written.
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: {reason}", place(path, *line))]
     File {
         /// The file as the user named it.
         path: PathBuf,
+        /// The line of a text file, counted from 1, if one is to blame.
+        line: Option<usize>,
         /// What is wrong with it.
         reason: String,
+        /// The error that it comes from, if there is one.
+        source: Option<Cause>,
     },
-    /// A line of a text file is wrong.
-    #[error("{}:{line}: {reason}", path.display())]
-    Line {
+    /// A file asks for more than the options allow.
+    #[error("{}: {reason} ({option})", place(path, *line))]
+    Limit {
         /// The file as the user named it.
         path: PathBuf,
-        /// The line, counted from 1.
-        line: usize,
-        /// What is wrong with it.
+        /// The line of a text file, counted from 1, if one is to blame.
+        line: Option<usize>,
+        /// What the file asks for.
         reason: String,
+        /// The field of the options, or the parameter, that allows more.
+        option: &'static str,
     },
     /// A field of [`Settings`](crate::Settings) or of the load options is out of its range.
     #[error("{name}: {reason}")]
@@ -40,12 +50,33 @@ pub enum Error {
         /// What is wrong with it.
         reason: String,
     },
+    /// A picture in memory is not valid, cannot be encoded, or cannot be compared with another.
+    #[error("{what}: {reason}")]
+    Picture {
+        /// Which, such as `frame`.
+        what: &'static str,
+        /// What is wrong with it.
+        reason: String,
+        /// The error that it comes from, if there is one.
+        source: Option<Cause>,
+    },
 }
 
 impl Error {
     /// A refusal of the file `path`.
     pub fn file(path: impl Into<PathBuf>, reason: impl ToString) -> Self {
-        Self::File { path: path.into(), reason: reason.to_string() }
+        Self::File { path: path.into(), line: None, reason: reason.to_string(), source: None }
+    }
+
+    /// A refusal of the file `path` for an error of the system or of another crate.
+    pub fn caused(path: impl Into<PathBuf>, cause: impl Into<Cause>) -> Self {
+        let cause = cause.into();
+        Self::File { path: path.into(), line: None, reason: plain(&cause), source: Some(cause) }
+    }
+
+    /// A refusal of a file that asks for more than `option` allows.
+    pub(crate) fn limit(path: impl Into<PathBuf>, reason: impl ToString, option: &'static str) -> Self {
+        Self::Limit { path: path.into(), line: None, reason: reason.to_string(), option }
     }
 
     /// A refusal of one setting.
@@ -56,6 +87,31 @@ impl Error {
     /// A refusal of one part of a scene.
     pub fn scene(part: impl ToString, reason: impl ToString) -> Self {
         Self::Scene { part: part.to_string(), reason: reason.to_string() }
+    }
+
+    /// A refusal of a picture in memory.
+    pub(crate) fn picture(what: &'static str, reason: impl ToString) -> Self {
+        Self::Picture { what, reason: reason.to_string(), source: None }
+    }
+
+    /// A refusal of a picture in memory for an error of another crate.
+    pub(crate) fn picture_caused(what: &'static str, cause: impl Into<Cause>) -> Self {
+        let cause = cause.into();
+        Self::Picture { what, reason: plain(&cause), source: Some(cause) }
+    }
+}
+
+/// `FILE` or `FILE:LINE`.
+fn place(path: &Path, line: Option<usize>) -> String {
+    line.map_or_else(|| path.display().to_string(), |line| format!("{}:{line}", path.display()))
+}
+
+/// One line, and the system's usual words without its error number.
+fn plain(cause: &Cause) -> String {
+    match cause.downcast_ref::<io::Error>().map(io::Error::kind) {
+        Some(io::ErrorKind::NotFound) => "no such file".into(),
+        Some(io::ErrorKind::PermissionDenied) => "permission denied".into(),
+        _ => cause.to_string().replace('\n', " "),
     }
 }
 

@@ -4,18 +4,20 @@
 //! # let folder = tempfile::tempdir().unwrap();
 //! # let golden = folder.path().join("gray.png");
 //! use basrelief::Frame;
-//! use basrelief::golden::{self, Thresholds};
+//! use basrelief::golden::{self, OnDifference, Thresholds};
 //!
 //! let frame = Frame::filled(32, 32, [0.2, 0.2, 0.2, 1.0]);
 //! # frame.save(&golden)?;
 //! // In a test: one in a thousand pixels may be off by more than two steps of 255.
-//! golden::check(&golden, &frame, Thresholds { tolerance: 2.0 / 255.0, share: 0.001 })?;
+//! let thresholds = Thresholds { tolerance: 2.0 / 255.0, share: 0.001 };
+//! let accept = std::env::var_os("ACCEPT").is_some();
+//! golden::check(&golden, &frame, thresholds, if accept { OnDifference::Accept } else { OnDifference::Fail })?;
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
 //! A picture that differs fails, and what was expected, what was drawn and where they differ is written to a folder `failed`
-//! beside the golden image (best kept out of the repository). With `BASRELIEF_ACCEPT=1` in the environment it becomes the
-//! golden image instead. `basrelief compare --golden` does the same for files.
+//! beside the golden image (best kept out of the repository). With [`OnDifference::Accept`] it becomes the golden image
+//! instead. `basrelief compare --golden` does the same for files.
 
 use crate::error::{Error, Result};
 use crate::frame::{Format, Frame, write_whole};
@@ -30,6 +32,15 @@ pub struct Thresholds {
     pub tolerance: f32,
     /// Share of the pixels that may differ, 0 to 1.
     pub share: f32,
+}
+
+/// What is done with a picture that is not its golden image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnDifference {
+    /// It fails, and the folder `failed` shows how it differs.
+    Fail,
+    /// It becomes the golden image.
+    Accept,
 }
 
 /// What became of a picture.
@@ -49,42 +60,46 @@ pub enum Verdict {
 /// # Errors
 /// Says how the pictures differ, or that there is no golden image yet, and where to look; or names the file that cannot be
 /// read or written.
-pub fn check(golden: impl AsRef<Path>, frame: &Frame, thresholds: Thresholds) -> Result<()> {
+pub fn check(
+    golden: impl AsRef<Path>,
+    frame: &Frame,
+    thresholds: Thresholds,
+    on_difference: OnDifference,
+) -> Result<()> {
     let golden = golden.as_ref();
-    match judge(golden, &frame.encode(Format::of(golden)?)?, thresholds)? {
+    let actual = frame.encode(Format::of(golden)?)?;
+    match judge(golden, &actual, thresholds, on_difference, Picture::MAX_PIXELS)? {
         Verdict::Failed(reason) => Err(Error::file(golden, reason)),
         Verdict::Passed | Verdict::Accepted => Ok(()),
     }
 }
 
-/// Checks that an image file, given as its bytes, is the golden image in the file `golden`.
-///
-/// # Errors
-/// Names the file that cannot be read or written, or that it has more than [`Picture::MAX_PIXELS`] pixels.
-pub fn judge(golden: &Path, actual: &[u8], thresholds: Thresholds) -> Result<Verdict> {
-    judge_within(golden, actual, thresholds, Picture::MAX_PIXELS)
-}
-
-/// As [`judge`], with another limit of the number of pixels; one takes 32 bytes while it is read.
+/// Checks that an image file, given as its bytes, is the golden image in the file `golden`. Neither may have more than
+/// `max_pixels` pixels, of which each takes 32 bytes while it is read.
 ///
 /// # Errors
 /// Names the file that cannot be read or written, or that it has more than `max_pixels` pixels.
-pub fn judge_within(golden: &Path, actual: &[u8], thresholds: Thresholds, max_pixels: u64) -> Result<Verdict> {
+pub fn judge(
+    golden: &Path,
+    actual: &[u8],
+    thresholds: Thresholds,
+    on_difference: OnDifference,
+    max_pixels: u64,
+) -> Result<Verdict> {
     let evidence = Evidence::of(golden)?;
-    let picture = Picture::from_bytes_within(actual, golden, max_pixels)?;
+    let picture = Picture::from_bytes(actual, golden, max_pixels)?;
     let expected = if golden.exists() { Some(Picture::open_within(golden, max_pixels)?) } else { None };
     let reason = match &expected {
         Some(expected) => difference(expected, &picture, thresholds),
         None => Some("there is no golden image yet".into()),
     };
     let Some(reason) = reason else { return evidence.remove().map(|()| Verdict::Passed) };
-    if std::env::var_os("BASRELIEF_ACCEPT").is_some_and(|value| value == "1") {
+    if on_difference == OnDifference::Accept {
         write_whole(golden, actual)?;
         return evidence.remove().map(|()| Verdict::Accepted);
     }
     evidence.write(golden, actual, expected.as_ref(), &picture)?;
-    let folder = evidence.folder.display();
-    Ok(Verdict::Failed(format!("{reason}; see {folder}, or accept it with BASRELIEF_ACCEPT=1")))
+    Ok(Verdict::Failed(format!("{reason}; see {}", evidence.folder.display())))
 }
 
 /// Why `actual` is not `expected`, if it is not.
@@ -140,10 +155,10 @@ impl Evidence {
 
     fn write(&self, golden: &Path, actual: &[u8], expected: Option<&Picture>, picture: &Picture) -> Result<()> {
         self.remove()?;
-        fs::create_dir_all(&self.folder).map_err(|e| Error::file(&self.folder, e))?;
+        fs::create_dir_all(&self.folder).map_err(|e| Error::caused(&self.folder, e))?;
         write_whole(&self.actual, actual)?;
         let Some(expected) = expected else { return Ok(()) };
-        write_whole(&self.expected, &fs::read(golden).map_err(|e| Error::file(golden, e))?)?;
+        write_whole(&self.expected, &fs::read(golden).map_err(|e| Error::caused(golden, e))?)?;
         if (expected.width(), expected.height()) == (picture.width(), picture.height()) {
             self.write_difference(errors(expected, picture), picture)?;
         }
@@ -163,7 +178,7 @@ impl Evidence {
     fn remove(&self) -> Result<()> {
         for file in [&self.expected, &self.actual, &self.difference] {
             match fs::remove_file(file) {
-                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::file(file, e)),
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::caused(file, e)),
                 _ => {}
             }
         }

@@ -66,7 +66,7 @@
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
-//! [`scene::load`] reads OBJ files, [`scene::builtin`] makes the scene of the README, [`Renderer`] keeps tables and buffers
+//! [`load::load`] reads OBJ files, [`scene::builtin`] makes the scene of the README, [`Renderer`] keeps tables and buffers
 //! between frames, [`metrics::compare`] measures two pictures, [`golden::check`] is for tests that
 //! compare with an image in their repository, and [`seen_color`] is the filter alone, on derivatives of your own,
 //! as [`ewa_color`] is the elliptical weighted average of flat textures.
@@ -80,7 +80,9 @@
 //!
 //! | module | what it does |
 //! |---|---|
-//! | [`scene`] | what is drawn: meshes, materials, camera, lights; OBJ and MTL loading; the built-in scene |
+//! | [`scene`] | what is drawn: meshes, materials, camera, lights; the built-in scene |
+//! | [`load`] | OBJ files, their MTL files and images, to a scene |
+//! | `decode` | image files to samples, within limits |
 //! | [`texture`] | stored texels: maps, packed mip levels, wrap, sRGB |
 //! | `geometry` | model space to screen triangles: projection, clipping, set-up in fixed point |
 //! | `raster` | screen triangles to quads: tiles, edge functions, depth, helper lanes |
@@ -108,10 +110,12 @@ pub mod frame;
 pub mod golden;
 pub mod inspect;
 pub mod invariants;
+pub mod load;
 pub mod metrics;
 pub mod scene;
 pub mod texture;
 
+mod decode;
 mod error;
 // The stages are public to the crate's own tests, benches and fuzz targets, and no part of the interface.
 #[doc(hidden)]

@@ -1,7 +1,7 @@
 //! Loading: what is read, how it is read, and what is refused with which words.
 
 use basrelief::Error;
-use basrelief::scene::{
+use basrelief::load::{
     HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY, load, load_obj_bytes, load_reporting,
 };
 use basrelief::texture::{Surface, Wrap};
@@ -99,6 +99,27 @@ fn polygons_become_fans_with_normals_and_tangents() {
     assert!(mesh.tex_coords.is_empty() && mesh.tangents.is_empty());
     let with_coords = Files::quad("").load();
     assert!(with_coords.scene.meshes[0].tangents.iter().all(|t| *t == [Vec3::X, Vec3::Y]));
+}
+
+#[test]
+fn made_normals_know_no_seams_and_edges_by_the_crease_angle() {
+    // A roof of 90 degrees whose ridge, from (0, 1, 0) to (0, 1, 1), has its own texture coordinates on either side.
+    let faces = "usemtl a\nf 1/1 3/3 4/4 2/2\nusemtl b\nf 1/5 2/6 6/4 5/3\n";
+    let obj = "mtllib s.mtl\nv 0 1 0\nv 0 1 1\nv -1 0 0\nv -1 0 1\nv 1 0 0\nv 1 0 1\n\
+               vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvt 5 0\nvt 6 0\n";
+    let mut files = Files::new(&format!("{obj}{faces}"), "newmtl a\n\nnewmtl b\n");
+    for (crease_angle, at_ridge) in [(60.0, [-1.0, 1.0]), (90.0, [0.0, 0.0])] {
+        files.options.crease_angle = crease_angle;
+        let meshes = files.load().scene.meshes;
+        for (mesh, x) in meshes.iter().zip(at_ridge) {
+            let ridge = mesh.positions.iter().zip(&mesh.normals).filter(|(p, _)| p.y == 1.0);
+            assert!(ridge.map(|(_, normal)| normal.x / normal.y).all(|slope| (slope - x).abs() < 1e-6), "{meshes:?}");
+        }
+    }
+    for crease_angle in [-1.0, 180.5, f32::NAN] {
+        files.options.crease_angle = crease_angle;
+        assert!(files.try_load().unwrap_err().to_string().contains("crease_angle"), "{crease_angle}");
+    }
 }
 
 #[test]
@@ -487,6 +508,24 @@ fn a_huge_image_is_refused_before_it_is_decoded() {
 }
 
 #[test]
+fn refusals_keep_their_cause() {
+    use std::error::Error as _;
+    let missing = load(Path::new("none.obj"), &LoadOptions::default()).expect_err("refused");
+    assert_eq!(missing.to_string(), "none.obj: no such file");
+    let cause =
+        missing.source().and_then(|cause| cause.downcast_ref::<std::io::Error>()).expect("an error of the system");
+    assert_eq!(cause.kind(), std::io::ErrorKind::NotFound);
+    let files = Files::quad("map_Kd a.png");
+    files.write("a.png", "no picture");
+    let damaged = files.try_load().expect_err("refused");
+    assert!(damaged.source().is_some_and(|cause| cause.is::<image::ImageError>()), "{damaged}");
+    let large = Files::new(&"v 0 0 0\n".repeat(3), "");
+    let options = LoadOptions { max_triangles: 2, ..LoadOptions::default() };
+    let large = load(&large.path("s.obj"), &options).expect_err("refused");
+    assert!(matches!(large, Error::Limit { line: Some(3), option: "max_triangles", .. }), "{large:?}");
+}
+
+#[test]
 fn textures_outside_the_folder_need_permission() {
     let files = Files::new("", "");
     let mut options = LoadOptions::default();
@@ -495,7 +534,7 @@ fn textures_outside_the_folder_need_permission() {
     files.image("a.png", one(1, 2, 3));
     let load = |options: &LoadOptions| load(&files.path("scene/s.obj"), options);
     let text = load(&options).expect_err("refused").to_string();
-    assert!(text.contains("s.mtl:2: '../a.png' lies outside") && text.contains("--allow-outside"), "{text}");
+    assert!(text.contains("s.mtl:2: '../a.png' lies outside") && text.contains("(allow_outside)"), "{text}");
     options.allow_outside = true;
     assert!(load(&options).expect("loads").scene.materials[0].surface.is_some());
     options.allow_outside = false;

@@ -21,8 +21,8 @@ const _: () = {
     is_send_and_sync::<Error>();
     is_send_and_sync::<metrics::Picture>();
     is_send_and_sync::<metrics::Difference>();
-    is_send_and_sync::<basrelief::scene::LoadOptions>();
-    is_send_and_sync::<basrelief::scene::Loaded>();
+    is_send_and_sync::<basrelief::load::LoadOptions>();
+    is_send_and_sync::<basrelief::load::Loaded>();
     is_send_and_sync::<basrelief::invariants::Pixel>();
 };
 

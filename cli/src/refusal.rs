@@ -44,7 +44,12 @@ impl From<Error> for Refusal {
             Error::Scene { part, reason } if part == "camera" => {
                 Self(format!("the camera (--eye, --target, --up, --fov, --near): {reason}"))
             }
-            _ => with_options(error.to_string()).into(),
+            Error::Limit { option, .. } => {
+                let text = error.to_string();
+                let reason = text.strip_suffix(&format!("({option})")).unwrap_or(&text);
+                Self(format!("{reason}({})", option_of(option)))
+            }
+            _ => Self(error.to_string()),
         }
     }
 }
@@ -53,13 +58,6 @@ impl From<Error> for Refusal {
 pub(crate) fn one_line(text: &str) -> String {
     let visible = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.into() };
     text.chars().map(visible).collect()
-}
-
-/// Fields of the load options that messages about files name.
-const LIMITS: &[&str] = &["max_image_side", "max_image_mib", "max_triangles", "max_textures", "max_pixels"];
-
-fn with_options(text: String) -> String {
-    LIMITS.iter().fold(text, |text, field| text.replace(field, &option_of(field)))
 }
 
 /// The option that sets a field of the settings or of the load options.

@@ -1,7 +1,7 @@
 //! Any bytes as a file.
 
 use basrelief::Error;
-use basrelief::scene::{LoadOptions, load_image_bytes, load_mtl_bytes, load_obj_bytes};
+use basrelief::load::{LoadOptions, load_image_bytes, load_mtl_bytes, load_obj_bytes};
 
 /// Any bytes as an OBJ file: a valid scene or an error of one line.
 pub fn load_obj(bytes: &[u8]) {

@@ -3,6 +3,7 @@
 //! A file is encoded in memory, written under a temporary name in its own folder, flushed to the disk and renamed:
 //! whoever looks finds the whole old file or the whole new one ([`write_whole`]).
 
+mod encode;
 mod format;
 mod pixel;
 mod png;
@@ -13,11 +14,9 @@ pub use format::Format;
 pub use pixel::Pixel;
 pub use save::{WholeFile, check_writable, write_whole};
 
-use crate::error::{Error, Result};
 use crate::settings::Region;
 use crate::texture::srgb8_from_linear;
 use rayon::prelude::*;
-use std::path::Path;
 
 /// Pixels that a thread encodes at once.
 const ROW: usize = 4096;
@@ -35,7 +34,6 @@ pub struct Frame<P = [f32; 4]> {
 
 impl<P: Pixel> Frame<P> {
     /// A frame of one colour.
-    #[must_use]
     pub fn filled(width: u32, height: u32, color: P) -> Self {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
@@ -56,13 +54,11 @@ impl<P: Pixel> Frame<P> {
     }
 
     /// Whether no pixel lets anything through.
-    #[must_use]
     pub fn is_opaque(&self) -> bool {
         self.pixels.iter().all(|pixel| pixel.to_linear()[3] >= 1.0)
     }
 
     /// 8-bit sRGB with straight opacity, row by row from the top.
-    #[must_use]
     pub fn to_rgba8(&self) -> Vec<[u8; 4]> {
         let mut bytes = vec![[0; 4]; self.pixels.len()];
         let rows = bytes.par_chunks_mut(ROW).zip(self.pixels.par_chunks(ROW));
@@ -71,7 +67,6 @@ impl<P: Pixel> Frame<P> {
     }
 
     /// 8-bit sRGB over black, row by row from the top.
-    #[must_use]
     pub fn to_rgb8(&self) -> Vec<[u8; 3]> {
         let over_black = |pixel: &P| {
             let [rgb @ .., _] = pixel.to_linear();
@@ -81,40 +76,8 @@ impl<P: Pixel> Frame<P> {
     }
 
     /// 8-bit sRGB samples, row by row from the top: four a pixel with straight opacity, or three over black.
-    #[must_use]
     pub fn to_bytes(&self, has_opacity: bool) -> Vec<u8> {
         if has_opacity { self.to_rgba8().into_flattened() } else { self.to_rgb8().into_flattened() }
-    }
-
-    /// The bytes of an image file.
-    ///
-    /// Formats of 8 bits hold sRGB: RGB where the frame is opaque everywhere, else RGBA with straight opacity; JPEG
-    /// knows no opacity and holds the frame over black. EXR holds linear pixels.
-    ///
-    /// # Errors
-    /// Says why when the format cannot hold the frame.
-    pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
-        self.encode_part(format, None)
-    }
-
-    /// The bytes of an image file that, in PNG, says of what larger picture it is a part; other formats cannot.
-    ///
-    /// # Errors
-    /// As [`Frame::encode`].
-    pub fn encode_part(&self, format: Format, part: Option<Part>) -> Result<Vec<u8>> {
-        if self.pixels.len() as u64 != u64::from(self.width) * u64::from(self.height) || self.pixels.is_empty() {
-            return Err(Error::scene("frame", "the number of pixels must be width times height and above 0"));
-        }
-        format::encode(self, format, part)
-    }
-
-    /// Writes an image file in the format of its extension: png, jpg, jpeg, tga, tif, tiff, bmp or exr.
-    ///
-    /// # Errors
-    /// Names the file when its extension is unknown or it cannot be written; an older file is then left as it was.
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        let path = path.as_ref();
-        write_whole(path, &self.encode(Format::of(path)?)?)
     }
 }
 

@@ -25,7 +25,6 @@ pub struct Part {
 impl Part {
     /// What the text chunks of a PNG file, keywords and texts, say of it; `None` where they say nothing, or nothing that
     /// fits its size.
-    #[must_use]
     pub fn of_chunks<'a>(
         [width, height]: [u32; 2],
         chunks: impl IntoIterator<Item = (&'a str, &'a str)>,
@@ -58,7 +57,7 @@ impl FromStr for Part {
             }
             _ => None,
         }
-        .ok_or_else(|| Error::scene("part", format!("{text:?} is not X,Y,W,H of WxH")))
+        .ok_or_else(|| Error::picture("part", format!("{text:?} is not X,Y,W,H of WxH")))
     }
 }
 
@@ -81,8 +80,10 @@ pub struct PngHead {
 /// The first error of `bands`; or why `sink` does not take the file, or that the bands are not as many rows as the head says.
 pub fn write_png(sink: impl Write, head: &PngHead, bands: impl IntoIterator<Item = Result<Vec<u8>>>) -> Result<()> {
     let refuse = |e: png::EncodingError| match e {
-        png::EncodingError::IoError(e) => Error::scene("PNG", format!("cannot be written: {e}")),
-        e => Error::scene("PNG", e),
+        png::EncodingError::IoError(e) => {
+            Error::Picture { what: "PNG", reason: format!("cannot be written: {e}"), source: Some(e.into()) }
+        }
+        e => Error::picture_caused("PNG", e),
     };
     let mut encoder = png::Encoder::new(sink, head.width, head.height);
     encoder.set_depth(png::BitDepth::Eight);

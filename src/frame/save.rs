@@ -18,7 +18,7 @@ const TEMPORARY: [&str; 2] = [".basrelief-", ".tmp"];
 /// Names the file when it cannot be written; an older file is then left as it was.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut file = WholeFile::create(path)?;
-    file.write_all(bytes).map_err(|e| unwritable(path, &e))?;
+    file.write_all(bytes).map_err(|e| unwritable(path, e))?;
     file.finish()
 }
 
@@ -51,11 +51,10 @@ impl WholeFile {
                 temporary_beside(&target).map(|file| Sink::Temporary { file, target, permissions })
             }
         };
-        Ok(Self { path: path.into(), sink: sink.map_err(|e| unwritable(path, &e))? })
+        Ok(Self { path: path.into(), sink: sink.map_err(|e| unwritable(path, e))? })
     }
 
     /// Where the bytes lie until the file is finished; `None` for devices and pipes.
-    #[must_use]
     pub fn temporary_path(&self) -> Option<&Path> {
         match &self.sink {
             Sink::Temporary { file, .. } => Some(file.path()),
@@ -79,7 +78,7 @@ impl WholeFile {
             Sink::Temporary { file, target, permissions } => finish(file, &target, permissions),
             Sink::Stream(mut stream) => stream.flush(),
         }
-        .map_err(|e| unwritable(&path, &e))
+        .map_err(|e| unwritable(&path, e))
     }
 }
 
@@ -100,8 +99,9 @@ impl Write for WholeFile {
     }
 }
 
-fn unwritable(path: &Path, error: &io::Error) -> Error {
-    Error::file(path, format!("cannot be written: {error}"))
+fn unwritable(path: &Path, error: io::Error) -> Error {
+    let reason = format!("cannot be written: {error}");
+    Error::File { path: path.into(), line: None, reason, source: Some(error.into()) }
 }
 
 /// Checks, before the work, that [`write_whole`] could write the file `path`: its folder exists and takes files. Removes
@@ -114,7 +114,7 @@ pub fn check_writable(path: &Path) -> Result<()> {
         Place::Stream => Ok(()),
         Place::File { target, .. } => {
             remove_abandoned(folder(&target));
-            temporary_beside(&target).map(drop).map_err(|e| unwritable(path, &e))
+            temporary_beside(&target).map(drop).map_err(|e| unwritable(path, e))
         }
     }
 }
@@ -141,7 +141,7 @@ impl Place {
             Ok(found) if !found.is_file() => Ok(Self::Stream),
             Ok(found) if found.permissions().readonly() => refuse("is write-protected"),
             Ok(found) => {
-                let target = fs::canonicalize(path).map_err(|e| Error::file(path, e))?;
+                let target = fs::canonicalize(path).map_err(|e| Error::caused(path, e))?;
                 Ok(Self::File { target, permissions: Some(found.permissions()) })
             }
             Err(_) if path.is_symlink() => refuse("is a link to a file that cannot be found"),

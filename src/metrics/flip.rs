@@ -6,7 +6,7 @@
 //! distance, with the Hunt effect. Edges and points, found in the unblurred lightness, raise the error where only one
 //! picture has them: `error = colour ^ (1 - feature)`. Constants are the paper's.
 
-use super::{Picture, check_sizes, is_compared};
+use super::picture::{Picture, check_sizes, is_compared};
 use crate::error::{Error, Result};
 use crate::texture::linear_from_srgb;
 use rayon::prelude::*;
@@ -59,7 +59,7 @@ pub fn flip(reference: &Picture, test: &Picture, pixels_per_degree: f32) -> Resu
     let errors: Vec<f32> = errors.collect();
     let num = reference.pixels().iter().zip(test.pixels()).filter(|(a, b)| is_compared(**a, **b)).count();
     if num == 0 {
-        return Err(Error::scene("pictures", "no pixel is opaque in both"));
+        return Err(Error::picture("pictures", "no pixel is opaque in both"));
     }
     Ok(Flip { mean: errors.iter().map(|&e| f64::from(e)).sum::<f64>() / num as f64, errors })
 }

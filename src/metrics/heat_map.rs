@@ -3,7 +3,7 @@
 //! The ramp runs from black over violet, red and orange to pale yellow. Its lightness in Oklab (B. Ottosson, 2020) grows
 //! evenly with the error, so that equal steps of error look equally large, to the colour-blind too.
 
-use super::{Picture, check_sizes, is_compared};
+use super::picture::{Picture, check_sizes, is_compared};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 use rayon::prelude::*;
@@ -31,7 +31,7 @@ pub fn heat_map(a: &Picture, b: &Picture, full_scale: f32) -> Result<Frame> {
 pub fn errors_as_colors(errors: &[f32], width: u32, full_scale: f32) -> Result<Frame> {
     check_scale(full_scale)?;
     if width == 0 || errors.is_empty() || !errors.len().is_multiple_of(width as usize) {
-        return Err(Error::scene("errors", format!("{} are no rows of {width}", errors.len())));
+        return Err(Error::picture("errors", format!("{} are no rows of {width}", errors.len())));
     }
     let pixels = errors.iter().map(|error| ramp((error / full_scale).min(1.0))).collect();
     Ok(Frame { width, height: (errors.len() / width as usize) as u32, pixels })

@@ -1,8 +1,8 @@
 //! A picture as it is looked at: sRGB-encoded values.
 
+use crate::decode::{self, ImageLimits};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
-use crate::scene::decode::{self, ImageLimits};
 use crate::texture::srgb_from_linear;
 use image::{ColorType, DynamicImage};
 use rayon::prelude::*;
@@ -26,7 +26,7 @@ impl Picture {
     /// Says so when the number of pixels is not width times height, or 0.
     pub fn new(width: u32, height: u32, mut pixels: Vec<[f32; 4]>) -> Result<Self> {
         if pixels.len() as u64 != u64::from(width) * u64::from(height) || pixels.is_empty() {
-            return Err(Error::scene("picture", "the number of pixels must be width times height and above 0"));
+            return Err(Error::picture("picture", "the number of pixels must be width times height and above 0"));
         }
         pixels.iter_mut().flatten().for_each(|value| *value = clamped(*value));
         Ok(Self { width, height, pixels })
@@ -49,15 +49,8 @@ impl Picture {
         Self::of_image(decode::image(path, limits(max_pixels))?)
     }
 
-    /// Decodes an image file from memory, as [`Picture::open`] does; `name` is for messages, and its extension tells a TGA.
-    ///
-    /// # Errors
-    /// As [`Picture::open`].
-    pub fn from_bytes(bytes: &[u8], name: impl AsRef<Path>) -> Result<Self> {
-        Self::from_bytes_within(bytes, name.as_ref(), Self::MAX_PIXELS)
-    }
-
-    pub(crate) fn from_bytes_within(bytes: &[u8], name: &Path, max_pixels: u64) -> Result<Self> {
+    /// Decodes an image file in memory; `name` is for messages, and its extension tells a TGA.
+    pub(crate) fn from_bytes(bytes: &[u8], name: &Path, max_pixels: u64) -> Result<Self> {
         Self::of_image(decode::image_bytes(bytes, name, limits(max_pixels))?)
     }
 
@@ -73,19 +66,16 @@ impl Picture {
     }
 
     /// Pixels a row.
-    #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
     /// Rows.
-    #[must_use]
     pub fn height(&self) -> u32 {
         self.height
     }
 
     /// All pixels, row by row from the top.
-    #[must_use]
     pub fn pixels(&self) -> &[[f32; 4]] {
         &self.pixels
     }
@@ -111,6 +101,20 @@ impl From<&Frame> for Picture {
         pixels.resize(frame.width as usize * frame.height as usize, [0.0; 4]);
         Self { width: frame.width, height: frame.height, pixels }
     }
+}
+
+/// Refuses pictures of different sizes.
+pub(super) fn check_sizes(a: &Picture, b: &Picture) -> Result<()> {
+    if (a.width(), a.height()) == (b.width(), b.height()) {
+        return Ok(());
+    }
+    let sizes = format!("{}x{} and {}x{} pixels", a.width(), a.height(), b.width(), b.height());
+    Err(Error::picture("pictures", format!("sizes differ: {sizes}")))
+}
+
+/// Whether a pixel takes part in a comparison.
+pub(super) fn is_compared(a: [f32; 4], b: [f32; 4]) -> bool {
+    a[3] >= 1.0 && b[3] >= 1.0
 }
 
 /// What an image of `texels` pixels may need. The widest sample format has 16 bytes a pixel.

@@ -10,7 +10,7 @@
 //! picture too small for any such pixel uses all its pixels. A window counts only the compared pixels within it, its
 //! weights scaled to a sum of 1: so a picture that is opaque everywhere gives the authors' figure.
 
-use super::{Picture, is_compared};
+use super::picture::{Picture, is_compared};
 use rayon::prelude::*;
 
 const RADIUS: usize = 5;

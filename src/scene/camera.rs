@@ -3,6 +3,11 @@
 use crate::error::{Error, Result};
 use glam::Vec3;
 
+/// Sine and cosine of the 15 degrees from which [`Camera::framing`] looks down: enough to see the top of things.
+const ELEVATION: [f32; 2] = [0.258_819_04, 0.965_925_8];
+/// How much of a picture [`Camera::framing`] fills at most, each way.
+const FILLED: f32 = 0.92;
+
 /// A pinhole camera. World space is right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -25,20 +30,27 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// Frames the box from `min` to `max` (world units) from slightly above, at the default field of view.
-    #[must_use]
-    pub fn framing(min: Vec3, max: Vec3) -> Self {
+    /// Frames the box from `min` to `max` (world units) from its front, which is the side of +Z, and a little from above, at
+    /// the default field of view. A picture that is `aspect` times as wide as high, or wider, shows all of it with a small
+    /// margin.
+    pub fn framing(min: Vec3, max: Vec3, aspect: f32) -> Self {
         let center = (min + max) * 0.5;
         // Far from the origin f32 cannot tell an eye nearer than this from its target.
         let least = (center.abs().max_element() * 1e-5).max(1e-6);
-        let radius = ((max - min).length() * 0.5).max(least);
-        let direction = Vec3::new(0.45, 0.55, 1.0).normalize();
-        let distance = radius / (0.5 * Self::default().fov_degrees.to_radians()).sin();
-        Self { eye: center + direction * distance, target: center, near: radius * 1e-3, ..Self::default() }
+        let half = ((max - min) * 0.5).max(Vec3::splat(least));
+        let to_eye = Vec3::new(0.0, ELEVATION[0], ELEVATION[1]);
+        let up = Vec3::new(0.0, ELEVATION[1], -ELEVATION[0]);
+        // A corner is in view at the distance `toward + |across| / slope` and beyond; left and right are alike.
+        let slope = Self::default().tan_half_fov() as f32 * FILLED;
+        let distance = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[y, z]| {
+            let corner = half * Vec3::new(1.0, y, z);
+            corner.dot(to_eye) + (corner.x / aspect).max(corner.dot(up).abs()) / slope
+        });
+        let eye = center + to_eye * distance.into_iter().fold(0.0, f32::max);
+        Self { eye, target: center, near: half.length() * 1e-3, ..Self::default() }
     }
 
     /// The axes of view space in world space: right, up and forward, each of length one.
-    #[must_use]
     pub fn axes(&self) -> [Vec3; 3] {
         let forward = (self.target - self.eye).normalize();
         let right = forward.cross(self.up).normalize();
@@ -46,10 +58,12 @@ impl Camera {
     }
 
     /// Pixels per unit of `x / w` and `y / w`, where `w` is the distance along the view, for a frame `height` pixels high (pixels are square).
-    #[must_use]
     pub fn focal_pixels(&self, height: u32) -> f32 {
-        let tan = (f64::from(self.fov_degrees).to_radians() * 0.5).tan();
-        (f64::from(height) * 0.5 / tan) as f32
+        (f64::from(height) * 0.5 / self.tan_half_fov()) as f32
+    }
+
+    fn tan_half_fov(&self) -> f64 {
+        (f64::from(self.fov_degrees).to_radians() * 0.5).tan()
     }
 
     /// Checks that the camera sees something.
@@ -78,12 +92,48 @@ impl Camera {
 mod tests {
     use super::*;
 
+    /// Where the corners of a box are seen, -1 to 1 from the left and lower edge of the picture to the others.
+    fn corners_seen(camera: &Camera, min: Vec3, max: Vec3, aspect: f32) -> Vec<[f32; 2]> {
+        let [right, up, forward] = camera.axes();
+        let tan = (camera.fov_degrees.to_radians() * 0.5).tan();
+        let corner = |i: u32| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { min[axis] } else { max[axis] });
+        (0..8)
+            .map(|i| Vec3::from_array(corner(i)) - camera.eye)
+            .map(|ray| [ray.dot(right) / aspect, ray.dot(up)].map(|across| across / (ray.dot(forward) * tan)))
+            .collect()
+    }
+
     #[test]
-    fn framing_is_valid_and_holds_the_box_whatever_its_size_and_place() {
-        for scale in [1e-9, 1.0, 1e18_f32] {
+    fn framing_fills_the_picture_and_keeps_a_margin() {
+        let boxes =
+            [[1.0, 1.0, 1.0], [10.0, 1.0, 1.0], [1.0, 10.0, 1.0], [1.0, 1.0, 10.0], [5.0, 0.0, 5.0], [2.0, 3.0, 0.0]];
+        for half in boxes.map(Vec3::from_array) {
+            for aspect in [0.4, 1.0, 16.0 / 9.0] {
+                let (min, max) = (Vec3::splat(7.0) - half, Vec3::splat(7.0) + half);
+                let camera = Camera::framing(min, max, aspect);
+                let seen = corners_seen(&camera, min, max, aspect);
+                let farthest = seen.as_flattened().iter().fold(0.0_f32, |most, at| most.max(at.abs()));
+                assert!((0.9..0.93).contains(&farthest), "{half} at {aspect}: {seen:?}");
+                let wider = corners_seen(&camera, min, max, aspect * 2.0);
+                assert!(wider.as_flattened().iter().all(|at| at.abs() < 0.93), "{half} at {aspect}: {wider:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn framing_looks_at_the_front_from_a_little_above() {
+        let camera = Camera::framing(Vec3::new(-1.0, 0.0, -3.0), Vec3::new(1.0, 4.0, 1.0), 1.0);
+        let [right, _, forward] = camera.axes();
+        assert!(right.abs_diff_eq(Vec3::X, 1e-6) && forward.z < 0.0);
+        assert!((forward.y.asin().to_degrees() + 15.0).abs() < 1e-3, "{forward}");
+    }
+
+    #[test]
+    fn framing_is_valid_whatever_the_size_and_place() {
+        for scale in [0.0, 1e-9, 1.0, 1e18_f32] {
             for place in [Vec3::ZERO, Vec3::ONE, Vec3::splat(1e18) - scale] {
                 let (min, max) = (place - scale, place + scale);
-                let camera = Camera::framing(min, max);
+                let camera = Camera::framing(min, max, 1.0);
                 camera.validate().unwrap_or_else(|error| panic!("{scale} at {place}: {error}"));
                 let forward = camera.axes()[2];
                 let nearest = (camera.target - camera.eye).dot(forward) - (max - min).length() * 0.5;

@@ -6,6 +6,11 @@
 
 use glam::{DVec3, Vec2, Vec3};
 
+/// Largest component of a position: products of larger ones leave the range of f32.
+pub(crate) const MAX_POSITION: f32 = 1e18;
+/// Largest texture coordinate in repeats: f32 has no texels left beyond.
+pub(crate) const MAX_REPEATS: f32 = 1e6;
+
 /// Triangles of one material.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
@@ -28,7 +33,6 @@ pub struct Mesh {
 impl Mesh {
     /// A mesh from its triangles; makes normals (area-weighted) where `normals` is empty, and tangents always. Triangles that
     /// name vertices that do not exist add nothing to either; the renderer refuses them.
-    #[must_use]
     pub fn new(positions: Vec<Vec3>, tex_coords: Vec<Vec2>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let mut mesh = Self { positions, tex_coords, normals, triangles, ..Self::default() };
         if mesh.normals.is_empty() {
@@ -93,14 +97,14 @@ impl Mesh {
             return Err(format!("triangle {triangle:?} names a vertex of {num} that does not exist"));
         }
         // Compared by component: the largest component of a vector with NaN need not be NaN.
-        let is_bounded = |v: &Vec3| v.abs().cmple(Vec3::splat(1e18)).all();
+        let is_bounded = |v: &Vec3| v.abs().cmple(Vec3::splat(MAX_POSITION)).all();
         if !self.positions.iter().all(is_bounded) || !self.normals.iter().all(is_bounded) {
             return Err("positions and normals must be finite and within 1e18".into());
         }
         if !self.tangents.iter().flatten().all(|axis| axis.is_finite()) {
             return Err("tangents must be finite".into());
         }
-        if !self.tex_coords.iter().all(|t| t.abs().cmple(Vec2::splat(1e6)).all()) {
+        if !self.tex_coords.iter().all(|t| t.abs().cmple(Vec2::splat(MAX_REPEATS)).all()) {
             return Err("texture coordinates must be finite and within 1e6 repeats".into());
         }
         Ok(())

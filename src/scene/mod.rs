@@ -2,83 +2,15 @@
 
 mod builtin;
 mod camera;
-mod contain;
-pub(crate) mod decode;
-mod files;
-mod gray_exr;
 mod light;
-mod lines;
-mod load;
-mod locate;
 mod material;
-mod memory;
 mod mesh;
-mod models;
-mod mtl;
-mod mtl_lines;
-mod obj;
-mod plan;
-mod samples;
-mod stage;
-mod surfaces;
-mod texture_line;
+mod whole;
 
 pub use builtin::builtin;
 pub use camera::Camera;
 pub use light::Light;
-pub use load::{HeightSense, LoadOptions, Loaded, MaterialOptions, NormalY, load, load_reporting};
 pub use material::Material;
-#[doc(hidden)]
-pub use memory::{load_image_bytes, load_mtl_bytes, load_obj_bytes};
 pub use mesh::Mesh;
-pub use stage::LoadStage;
-
-use crate::error::{Error, Result};
-use glam::Vec3;
-
-/// What is drawn.
-#[derive(Clone, Debug, Default)]
-pub struct Scene {
-    /// The surfaces. Each names one of `materials`.
-    pub meshes: Vec<Mesh>,
-    /// What the surfaces are made of.
-    pub materials: Vec<Material>,
-    /// From where they are seen.
-    pub camera: Camera,
-    /// What lights them under [`Lighting::Lit`](crate::Lighting::Lit).
-    pub lights: Vec<Light>,
-    /// Light from everywhere, linear RGB, 0 to 1e6, added to the lights under [`Lighting::Lit`](crate::Lighting::Lit).
-    pub ambient: Vec3,
-    /// Colour where nothing is hit, linear RGB, 0 to 1e6, and opacity. Default: black and transparent.
-    pub background: [f32; 4],
-}
-
-impl Scene {
-    /// Checks indices, array lengths and that every number is within its range.
-    ///
-    /// # Errors
-    /// Names the first part that is not valid.
-    pub fn validate(&self) -> Result<()> {
-        self.camera.validate()?;
-        for (i, material) in self.materials.iter().enumerate() {
-            material
-                .validate()
-                .map_err(|reason| Error::scene(format!("material {i} ({})", material.name.escape_debug()), reason))?;
-        }
-        for (i, mesh) in self.meshes.iter().enumerate() {
-            mesh.validate(self.materials.len())
-                .map_err(|reason| Error::scene(format!("mesh {i} ({})", mesh.name.escape_debug()), reason))?;
-        }
-        for (i, light) in self.lights.iter().enumerate() {
-            light.validate().map_err(|reason| Error::scene(format!("light {i}"), reason))?;
-        }
-        if !light::is_light(self.ambient) {
-            return Err(Error::scene("scene", "ambient must be within 0 to 1e6"));
-        }
-        let [r, g, b, opacity] = self.background;
-        if !light::is_light(Vec3::new(r, g, b)) || !(0.0..=1.0).contains(&opacity) {
-            return Err(Error::scene("scene", "background must be within 0 to 1e6, its opacity within 0 to 1"));
-        }
-        Ok(())
-    }
-}
+pub(crate) use mesh::{MAX_POSITION, MAX_REPEATS};
+pub use whole::Scene;

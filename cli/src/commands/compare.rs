@@ -49,7 +49,7 @@ pub(crate) fn run(options: &CompareOptions) -> Result<ExitCode, Refusal> {
 
 fn refusal([a, b]: [&PathBuf; 2], error: Error) -> Refusal {
     let reason = match error {
-        Error::Scene { reason, .. } => reason,
+        Error::Picture { reason, .. } => reason,
         _ => error.to_string(),
     };
     format!("{} and {}: {reason}", a.display(), b.display()).into()

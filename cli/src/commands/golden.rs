@@ -4,11 +4,14 @@ use crate::options::compare::CompareOptions;
 use crate::output;
 use crate::refusal::Refusal;
 use basrelief::frame::Format;
-use basrelief::golden::{Thresholds, Verdict, judge_within};
+use basrelief::golden::{OnDifference, Thresholds, Verdict, judge};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// The environment variable that, set to 1, makes pictures that differ the golden ones.
+const ACCEPT: &str = "BASRELIEF_ACCEPT";
 
 /// One JSON object a line.
 #[derive(Serialize)]
@@ -28,10 +31,15 @@ pub(crate) fn run(options: &CompareOptions, folder: &Path) -> Result<ExitCode, R
         return Err(format!("--golden {}: is not a folder", folder.display()).into());
     }
     let thresholds = Thresholds { tolerance: options.tolerance, share: options.share };
+    let accept = std::env::var_os(ACCEPT).is_some_and(|value| value == "1");
+    let on_difference = if accept { OnDifference::Accept } else { OnDifference::Fail };
     let mut all_passed = true;
     for (file, golden) in pairs(options, folder)? {
         let verdict = match std::fs::read(&file) {
-            Ok(bytes) => judge_within(&golden, &bytes, thresholds, options.max_pixels)?,
+            Ok(bytes) => match judge(&golden, &bytes, thresholds, on_difference, options.max_pixels)? {
+                Verdict::Failed(reason) => Verdict::Failed(format!("{reason}, or accept it with {ACCEPT}=1")),
+                verdict => verdict,
+            },
             Err(e) if e.kind() == std::io::ErrorKind::NotFound && golden.is_file() => {
                 Verdict::Failed("there is no such image to compare".into())
             }

@@ -37,7 +37,7 @@ pub(crate) fn run(options: &JoinOptions) -> Result<ExitCode, Refusal> {
     output::write_by(&options.output, |sink| {
         let sink = BufWriter::with_capacity(1 << 20, sink);
         write_png(sink, &head, (0..height).map(|y| rows.row(y))).map_err(|e| match e {
-            Error::Scene { reason, .. } => Refusal::file(&options.output, reason),
+            Error::Picture { reason, .. } => Refusal::file(&options.output, reason),
             e => e.into(),
         })
     })?;

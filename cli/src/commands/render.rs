@@ -103,7 +103,7 @@ impl Job<'_> {
     /// The renderer of the scene, with its tables; the scene file is written if one is asked for.
     fn prepare(&self) -> Result<Renderer, Refusal> {
         let Self { options, settings, progress, .. } = self;
-        let loaded = options.scene.load(settings.lighting == Lighting::Lit, progress)?;
+        let loaded = options.scene.load(settings, settings.lighting == Lighting::Lit, progress)?;
         loaded.choices.iter().for_each(|choice| progress.say(choice));
         loaded.warnings.iter().for_each(|warning| progress.warn(warning));
         let camera = loaded.scene.camera;

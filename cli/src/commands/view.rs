@@ -20,11 +20,11 @@ pub(crate) fn run(mut options: ViewerOptions) -> Result<ExitCode, Refusal> {
     }
     let progress = Progress::new(false);
     // Light can be switched on: normals are kept.
-    let loaded = options.scene.load(true, &progress)?;
+    let loaded = options.scene.load(&settings, true, &progress)?;
     loaded.choices.iter().for_each(|choice| progress.say(choice));
     loaded.warnings.iter().for_each(|warning| progress.warn(warning));
     drop(progress);
-    let load_options = options.scene.load_options(true);
+    let load_options = options.scene.load_options(&settings, true);
     let mut viewer = Viewer::new(loaded.scene, settings, options.scene.path(), load_options);
     viewer.split_with(options.split);
     viewer.keep_full_size(options.full_size);

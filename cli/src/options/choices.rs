@@ -1,6 +1,6 @@
 //! Options that are one of a few words.
 
-use basrelief::scene::{HeightSense, NormalY};
+use basrelief::load::{HeightSense, NormalY};
 use basrelief::texture::Wrap;
 use basrelief::{Derivatives, Filter, Formulas, Lighting, Visibility};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};

@@ -7,9 +7,9 @@ use crate::options::file_values::{self, PointLight, Spelt, Sun};
 use crate::options::values;
 use crate::progress::Progress;
 use crate::refusal::Refusal;
-use basrelief::scene::{self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY};
+use basrelief::load::{self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY};
 use basrelief::texture::Wrap;
-use basrelief::{Camera, Light, Scene};
+use basrelief::{Camera, Light, Scene, Settings, scene};
 use clap::Args;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -22,6 +22,9 @@ pub(crate) struct SceneOptions {
     /// options override; without one, a built-in scene
     #[arg(value_name = "SCENE")]
     pub(crate) model: Option<PathBuf>,
+    /// Where SCENE has no normals: faces that meet at more than this angle, 0 to 180 degrees, show an edge [default: 60]
+    #[arg(long, value_name = "DEG", value_parser = values::crease_angle, allow_hyphen_values = true, requires = "model")]
+    pub(crate) crease_angle: Option<f32>,
     #[command(flatten)]
     pub(crate) all_materials: MapOptions,
     /// Options of single materials by name; only scene files give them.
@@ -157,10 +160,10 @@ impl SceneOptions {
     }
 
     /// Reads or makes the scene and sets what the options say.
-    pub(crate) fn load(&self, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
+    pub(crate) fn load(&self, settings: &Settings, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
         let report = |stage: LoadStage| progress.stage(stage.to_string());
         let mut loaded = match &self.model {
-            Some(obj) => scene::load_reporting(obj, &self.load_options(is_lit), &report)?,
+            Some(obj) => load::load_reporting(obj, &self.load_options(settings, is_lit), &report)?,
             None if self.has_maps() => return Err("materials are given, but no model (OBJ file) that has them".into()),
             None => built_in(),
         };
@@ -185,13 +188,15 @@ impl SceneOptions {
     }
 
     /// How that file is read.
-    pub(crate) fn load_options(&self, is_lit: bool) -> LoadOptions {
+    pub(crate) fn load_options(&self, settings: &Settings, is_lit: bool) -> LoadOptions {
         let (maps, limits) = (&self.all_materials, &self.limits);
         let default = LoadOptions::default();
         LoadOptions {
             all: maps.material(),
             materials: self.material.iter().map(|(name, maps)| (name.clone(), maps.material())).collect(),
             keep_normals: is_lit,
+            aspect: settings.width as f32 / settings.height as f32,
+            crease_angle: self.crease_angle.unwrap_or(default.crease_angle),
             allow_outside: limits.allow_outside.unwrap_or(default.allow_outside),
             max_image_side: limits.max_image_side.unwrap_or(default.max_image_side),
             max_image_mib: limits.max_image_mib.unwrap_or(default.max_image_mib),
@@ -280,7 +285,7 @@ mod tests {
 
     #[test]
     fn camera_keeps_what_is_not_given() {
-        let mut camera = Camera::framing(Vec3::ZERO, Vec3::ONE);
+        let mut camera = Camera::framing(Vec3::ZERO, Vec3::ONE, 1.0);
         let framing = camera;
         parse("--eye -1,2,-3 --fov 30").unwrap().camera.place(&mut camera);
         assert_eq!(camera, Camera { eye: Vec3::new(-1.0, 2.0, -3.0), fov_degrees: 30.0, ..framing });
@@ -307,12 +312,20 @@ mod tests {
 
     #[test]
     fn no_options_are_the_defaults_of_the_library() {
-        assert_eq!(parse("").unwrap().load_options(false), LoadOptions::default());
+        let square = Settings { width: 5, height: 5, ..Settings::default() };
+        assert_eq!(parse("").unwrap().load_options(&square, false), LoadOptions::default());
     }
 
     #[test]
     fn options_of_files_need_a_file() {
-        for line in ["--height a.png", "--wrap clamp", "--allow-outside", "--relief-depth 0.1", "--max-textures 3"] {
+        for line in [
+            "--height a.png",
+            "--wrap clamp",
+            "--allow-outside",
+            "--relief-depth 0.1",
+            "--max-textures 3",
+            "--crease-angle 0",
+        ] {
             assert!(parse(line).err().unwrap().to_string().contains("SCENE"), "{line}");
             assert!(parse(&format!("a.obj {line}")).is_ok(), "{line}");
         }

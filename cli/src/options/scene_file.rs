@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! model = "house.obj"             # left out: the built-in scene
+//! crease-angle = 30.0             # --crease-angle
 //! [all-materials]                 # --albedo, --height, --relief-depth and their like
 //! relief-depth = 0.04
 //! [material.brick]                # the same keys for the material of that name
@@ -22,6 +23,7 @@
 //! Keys are the names of options, tables are the headings of the help. Files are named relative to the scene file. An option
 //! on the command line overrides the key.
 
+use crate::options::file_values;
 use crate::options::scene::{CameraOptions, LightOptions, LimitOptions, MapOptions, SceneOptions};
 use crate::options::settings::{FilterOptions, FrameOptions, SettingsOptions, check};
 use crate::refusal::{Refusal, option_of};
@@ -36,6 +38,8 @@ use toml::{Table, Value};
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 struct SceneFile {
     model: Option<PathBuf>,
+    #[serde(deserialize_with = "file_values::crease_angle")]
+    crease_angle: Option<f32>,
     all_materials: MapOptions,
     material: BTreeMap<String, MapOptions>,
     camera: CameraOptions,
@@ -106,14 +110,17 @@ fn folder_of(path: &Path) -> &Path {
 
 impl SceneFile {
     fn of(scene: &SceneOptions, settings: &SettingsOptions) -> Self {
-        let SceneOptions { model, all_materials, material, limits, camera, light } = scene.clone();
+        let SceneOptions { model, crease_angle, all_materials, material, limits, camera, light } = scene.clone();
         let SettingsOptions { frame, filter } = settings.clone();
-        Self { model, all_materials, material, camera, light, frame, filter, limits }
+        Self { model, crease_angle, all_materials, material, camera, light, frame, filter, limits }
     }
 
     fn options(self) -> (SceneOptions, SettingsOptions) {
-        let Self { model, all_materials, material, camera, light, frame, filter, limits } = self;
-        (SceneOptions { model, all_materials, material, limits, camera, light }, SettingsOptions { frame, filter })
+        let Self { model, crease_angle, all_materials, material, camera, light, frame, filter, limits } = self;
+        (
+            SceneOptions { model, crease_angle, all_materials, material, limits, camera, light },
+            SettingsOptions { frame, filter },
+        )
     }
 
     fn table(&self) -> Result<Table, Refusal> {

@@ -50,6 +50,11 @@ pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
     check::field_of_view(number(text)?)
 }
 
+/// A number of degrees from 0 to 180.
+pub(crate) fn crease_angle(text: &str) -> Result<f32, String> {
+    check::crease_angle(number(text)?)
+}
+
 /// A number above 0.
 pub(crate) fn above_zero(text: &str) -> Result<f32, String> {
     check::above_zero(number(text)?)
@@ -132,6 +137,10 @@ pub(crate) mod check {
 
     pub(crate) fn field_of_view(value: f32) -> Result<f32, String> {
         if value > 0.0 && value < 180.0 { Ok(value) } else { Err("must be above 0 and below 180 degrees".into()) }
+    }
+
+    pub(crate) fn crease_angle(value: f32) -> Result<f32, String> {
+        if (0.0..=180.0).contains(&value) { Ok(value) } else { Err("must be within 0 to 180 degrees".into()) }
     }
 
     pub(crate) fn above_zero(value: f32) -> Result<f32, String> {
@@ -249,6 +258,7 @@ mod tests {
         assert!(["0,0,0", "0,0,0,1,1,1"].iter().all(|bad| sun(bad).is_err()) && direction("0,0,0").is_err());
         assert_eq!(intensity("0.5"), Ok(Vec3::splat(0.5)));
         assert!(["0", "180", "-5", "nan"].iter().all(|bad| field_of_view(bad).is_err()));
+        assert!(["-1", "181", "nan"].iter().all(|bad| crease_angle(bad).is_err()));
         assert!(["0", "1.5", "-5", "nan"].iter().all(|bad| fraction(bad).is_err()));
     }
 

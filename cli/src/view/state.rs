@@ -8,7 +8,7 @@ use crate::view::overlay;
 use crate::view::pace::Pace;
 use crate::view::worker::{Answer, Wish};
 use basrelief::inspect;
-use basrelief::scene::{self, LoadOptions};
+use basrelief::load::{self, LoadOptions};
 use basrelief::{Filter, Frame, Lighting, Region, Scene, Settings};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -199,7 +199,7 @@ impl Viewer {
                 path
             }
         };
-        match scene::load(&path, &options).and_then(|loaded| loaded.scene.validate().map(|()| loaded.scene)) {
+        match load::load(&path, &options).and_then(|loaded| loaded.scene.validate().map(|()| loaded.scene)) {
             Ok(scene) => {
                 if kind_of(dropped) == Kind::Scene {
                     self.orbit = Orbit::new(scene.camera);
@@ -312,6 +312,7 @@ fn kind_of(path: &Path) -> Kind {
 mod tests {
     use super::*;
     use crate::view::worker::Drawn;
+    use basrelief::scene;
 
     fn viewer() -> Viewer {
         let settings = Settings { width: 320, height: 180, ..Settings::default() };

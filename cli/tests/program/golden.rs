@@ -2,7 +2,7 @@
 
 use crate::folder::{Folder, json, text};
 use basrelief::Frame;
-use basrelief::golden::{Thresholds, check};
+use basrelief::golden::{OnDifference::*, Thresholds, check};
 use std::fs;
 
 fn names(folder: &Folder, name: &str) -> Vec<String> {
@@ -22,17 +22,17 @@ fn library_checks_frames() {
     for name in ["floor.png", "floor.exr", "floor.tga"] {
         let golden = folder.path("golden").join(name);
         let mut frame = Frame::filled(20, 10, [0.3, 0.2, 0.1, 1.0]);
-        let missing = check(&golden, &frame, exact).unwrap_err().to_string();
+        let missing = check(&golden, &frame, exact, Fail).unwrap_err().to_string();
         assert!(
-            missing.contains(name) && missing.contains("no golden image") && missing.contains("BASRELIEF_ACCEPT=1"),
+            missing.contains(name) && missing.contains("no golden image") && missing.contains("failed"),
             "{missing}"
         );
         assert_eq!(names(&folder, "golden/failed"), [name.replace("floor.", "floor.actual.")]);
         frame.save(&golden).unwrap();
-        check(&golden, &frame, exact).unwrap();
+        check(&golden, &frame, exact, Fail).unwrap();
         assert!(!folder.path("golden/failed").exists(), "what failed before is gone");
         frame.pixels[25][2] = 0.9;
-        let differs = check(&golden, &frame, exact).unwrap_err().to_string();
+        let differs = check(&golden, &frame, exact, Fail).unwrap_err().to_string();
         assert!(differs.contains("1 pixels (0.5000%)") && differs.contains("x 5, y 1"), "{differs}");
         let shown = ["actual", "expected"].map(|what| name.replace("floor.", &format!("floor.{what}.")));
         assert_eq!(names(&folder, "golden/failed"), [&shown[0], "floor.difference.png", &shown[1]]);
@@ -41,9 +41,13 @@ fn library_checks_frames() {
         let shown = image::open(folder.path("golden/failed/floor.difference.png")).unwrap().to_rgb8();
         let bright: Vec<_> = shown.enumerate_pixels().filter(|(.., p)| p.0 != [0; 3]).map(|(x, y, _)| (x, y)).collect();
         assert_eq!(bright, [(5, 1)]);
-        check(&golden, &frame, Thresholds { tolerance: 0.0, share: 0.005 }).unwrap();
+        check(&golden, &frame, Thresholds { tolerance: 0.0, share: 0.005 }, Fail).unwrap();
+        check(&golden, &frame, exact, Accept).unwrap();
+        assert!(!folder.path("golden/failed").exists(), "what is accepted has not failed");
+        check(&golden, &frame, exact, Fail).unwrap();
     }
-    let other = check(folder.path("golden/floor.png"), &Frame::filled(3, 2, [1.0; 4]), exact).unwrap_err().to_string();
+    let other =
+        check(folder.path("golden/floor.png"), &Frame::filled(3, 2, [1.0; 4]), exact, Fail).unwrap_err().to_string();
     assert!(other.contains("20x10") && other.contains("3x2"), "{other}");
 }
 
@@ -63,7 +67,8 @@ fn program_checks_and_accepts_files() {
     let seen: Vec<_> =
         lines.iter().map(|line| (line["file"].as_str().unwrap(), line["passed"].as_bool().unwrap())).collect();
     assert_eq!(seen, [("out/new.png", false), ("out/other.png", false), ("out/same.png", true)]);
-    assert!(lines[1]["reason"].as_str().unwrap().contains("192 pixels (100.0000%)"), "{}", lines[1]);
+    let reason = lines[1]["reason"].as_str().unwrap();
+    assert!(reason.contains("192 pixels (100.0000%)") && reason.contains("BASRELIEF_ACCEPT=1"), "{reason}");
     assert_eq!(
         names(&folder, "golden/failed"),
         ["new.actual.png", "other.actual.png", "other.difference.png", "other.expected.png"]

@@ -3,7 +3,7 @@
 //! The circle's points come from `((1 - t²) / (1 + t²), 2t / (1 + t²))`, which needs no sine and so gives the same mesh
 //! on every machine. `u` runs along the way, so that courses of stones lie level in the pillars and radial above.
 
-use crate::scene::Mesh;
+use crate::scene::mesh::Mesh;
 use glam::{Vec2, Vec3};
 
 /// Measures in world units; the arch stands on y = 0, open along z, its middle at the origin.

@@ -7,7 +7,11 @@ mod arch;
 mod noise;
 mod stones;
 
-use super::{Camera, Light, Material, Mesh, Scene};
+use crate::scene::camera::Camera;
+use crate::scene::light::Light;
+use crate::scene::material::Material;
+use crate::scene::mesh::Mesh;
+use crate::scene::whole::Scene;
 use crate::texture::{Surface, SurfaceMaps};
 use arch::Arch;
 use glam::{Vec2, Vec3};
@@ -21,7 +25,6 @@ const ARCH_REPEAT: f32 = 1.8;
 const HORIZON: f32 = 1500.0;
 
 /// The embedded scene: cobbles and an arch under a low sun.
-#[must_use]
 pub fn builtin() -> Scene {
     let (street, arch) = rayon::join(|| surface(&street_style(), 1024, 0.06), || surface(&arch_style(), 512, 0.05));
     let materials = vec![

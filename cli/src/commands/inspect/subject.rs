@@ -34,7 +34,7 @@ impl Subject {
             return Err("--region: a pixel is named by its place in the whole picture".into());
         }
         let progress = Progress::new(false);
-        let loaded = options.scene.load(false, &progress)?;
+        let loaded = options.scene.load(&settings, false, &progress)?;
         loaded.warnings.iter().for_each(|warning| progress.warn(warning));
         Ok(Self { scene: loaded.scene, settings, pixel, layers: Layers::default(), title: None })
     }

@@ -50,7 +50,7 @@ fn settings_of(options: &StudyOptions, of_file: &SettingsOptions) -> Result<Sett
 }
 
 fn load(options: &StudyOptions, settings: &Settings, progress: &Progress) -> Result<Scene, Refusal> {
-    let loaded = options.scene.load(settings.lighting == Lighting::Lit, progress)?;
+    let loaded = options.scene.load(settings, settings.lighting == Lighting::Lit, progress)?;
     loaded.choices.iter().for_each(|choice| progress.say(choice));
     loaded.warnings.iter().for_each(|warning| progress.warn(warning));
     Ok(loaded.scene)

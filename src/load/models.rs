@@ -1,8 +1,8 @@
 //! tobj's models to meshes with texture coordinates as the materials scale them, normals and tangents.
 
-use super::Mesh;
-use super::locate::{MAX_POSITION, MAX_REPEATS};
 use super::mtl::{MtlMaterial, TextureRef};
+use super::normals;
+use crate::scene::{MAX_POSITION, MAX_REPEATS, Mesh};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -40,39 +40,31 @@ pub(super) fn has_bad_number(mesh: &Mesh) -> bool {
 ///
 /// # Errors
 /// Says which mesh's texture coordinates leave their range.
-pub(super) fn finish(meshes: Vec<Mesh>, materials: &[MtlMaterial]) -> Result<Vec<Mesh>, String> {
-    let finished: Vec<Mesh> = meshes
-        .into_par_iter()
-        .map(|mut mesh| {
-            let (scale, offset) = materials.get(mesh.material).map_or((Vec2::ONE, Vec2::ZERO), placement);
-            if (scale, offset) != (Vec2::ONE, Vec2::ZERO) {
-                mesh.tex_coords.iter_mut().for_each(|t| *t = *t * scale + offset);
-            }
-            with_frames(mesh)
-        })
-        .collect();
-    match finished.iter().find(|mesh| has_bad_number(mesh)) {
-        Some(mesh) => Err(format!("-s or -o moves texture coordinates of '{}' out of range", mesh.name)),
-        None => Ok(finished),
+pub(super) fn finish(mut meshes: Vec<Mesh>, materials: &[MtlMaterial], crease_angle: f32) -> Result<Vec<Mesh>, String> {
+    meshes.par_iter_mut().for_each(|mesh| {
+        let (scale, offset) = materials.get(mesh.material).map_or((Vec2::ONE, Vec2::ZERO), placement);
+        if (scale, offset) != (Vec2::ONE, Vec2::ZERO) {
+            mesh.tex_coords.iter_mut().for_each(|t| *t = *t * scale + offset);
+        }
+        // Normals that have no direction are made, like missing ones.
+        mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);
+        mesh.normals.iter_mut().for_each(|normal| *normal = unit_or_zero(*normal));
+    });
+    if let Some(mesh) = meshes.iter().find(|mesh| has_bad_number(mesh)) {
+        return Err(format!("-s or -o moves texture coordinates of '{}' out of range", mesh.name));
     }
+    normals::make(&mut meshes, crease_angle)?;
+    Ok(meshes.into_par_iter().map(with_tangents).collect())
 }
 
-fn with_frames(mesh: Mesh) -> Mesh {
+fn with_tangents(mesh: Mesh) -> Mesh {
     let Mesh { name, material, positions, tex_coords, normals, triangles, .. } = mesh;
-    let given: Vec<Option<Vec3>> = normals.into_iter().map(unit).collect();
-    let whole: Option<Vec<Vec3>> = given.iter().copied().collect();
-    // Normals that have no direction are made, like missing ones.
-    let is_whole = whole.is_some();
-    let mut made = Mesh::new(positions, tex_coords, whole.unwrap_or_default(), triangles);
-    if !is_whole {
-        made.normals.iter_mut().zip(given).for_each(|(normal, given)| *normal = given.unwrap_or(*normal));
-    }
-    Mesh { name, material, ..made }
+    Mesh { name, material, ..Mesh::new(positions, tex_coords, normals, triangles) }
 }
 
-fn unit(normal: Vec3) -> Option<Vec3> {
+fn unit_or_zero(normal: Vec3) -> Vec3 {
     // Divided first: the square of a large component would be infinite.
-    (normal / normal.abs().max_element()).try_normalize()
+    (normal / normal.abs().max_element()).normalize_or_zero()
 }
 
 /// Scale and shift of a material's texture coordinates: those of its colour map, else of its first other map.

@@ -1,13 +1,9 @@
 //! Finds the line of an error that shows only after the whole OBJ file is read. Runs on failure only.
 
-use super::lines::CleanLines;
-use super::obj::{ObjLines, Source};
+use super::clean::ObjLines;
 use crate::error::{Error, Result};
-
-/// Positions beyond this are refused: their products would leave the range of f32.
-pub(super) const MAX_POSITION: f32 = 1e18;
-/// Texture coordinates beyond this many repeats are refused: f32 has no texels left there.
-pub(super) const MAX_REPEATS: f32 = 1e6;
+use crate::load::lines::{CleanLines, Source};
+use crate::scene::{MAX_POSITION, MAX_REPEATS};
 
 /// The first face with an index that its list does not have.
 pub(super) fn bad_index(source: &dyn Source) -> Option<Error> {
@@ -39,7 +35,7 @@ fn first_beyond(source: &dyn Source, num_in_file: Option<[u64; 3]>) -> Option<Er
 }
 
 /// The first `v` whose position, or `vt` whose coordinates, are not finite or out of range.
-pub(super) fn bad_number(source: &dyn Source) -> Option<Error> {
+pub(in crate::load) fn bad_number(source: &dyn Source) -> Option<Error> {
     let mut lines = lines(source).ok()?;
     while lines.advance().ok()? {
         let text = lines.text();

@@ -3,8 +3,8 @@
 //! Keywords are read in any spelling of upper and lower case and handed to tobj in its own; what tobj would panic at or
 //! refuse a whole file for (`Kd` with one number, an empty `map_Kd`) is put right or refused with its line before.
 
-use super::lines::{Clean, Place};
 use crate::error::Result;
+use crate::load::lines::{Clean, Place};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 

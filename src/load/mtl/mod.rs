@@ -1,14 +1,18 @@
 //! MTL files, through tobj, to materials whose texture lines are taken apart.
 
-use super::files::{self, Folder};
+mod lines;
+mod texture_line;
+
+use super::files::Folder;
 use super::lines::{CleanLines, Place};
-use super::mtl_lines::{LineNumbers, MtlLines};
-use super::texture_line::TextureLine;
+use crate::decode::{contain, open_regular};
 use crate::error::{Error, Result};
+use lines::{LineNumbers, MtlLines};
 use std::collections::HashSet;
 use std::io::{BufRead, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use texture_line::TextureLine;
 
 /// Largest MTL file that is read in bytes, and most materials: real ones have a few hundred kilobytes.
 const MAX_MTL_BYTES: u64 = 16 << 20;
@@ -50,6 +54,8 @@ pub(super) struct MtlMaterial {
 /// All MTL files that an OBJ names.
 pub(super) struct MtlFiles {
     obj: PathBuf,
+    /// The line of the OBJ that was read last and names MTL files.
+    pub(super) line: usize,
     folder: Folder,
     pub(super) materials: Vec<MtlMaterial>,
     pub(super) warnings: Vec<String>,
@@ -58,49 +64,31 @@ pub(super) struct MtlFiles {
     files: HashSet<PathBuf>,
 }
 
-/// What `tobj` takes materials as, whose kind of map it does not name.
-pub(super) type TobjMaterials = <tobj::MTLLoadResult as Successful>::Value;
-
-pub(super) trait Successful {
-    type Value;
-}
-
-impl<T, E> Successful for std::result::Result<T, E> {
-    type Value = T;
-}
-
 impl MtlFiles {
     /// No materials yet, for the OBJ file `obj`.
     pub(super) fn new(obj: &Path, folder: &Folder) -> Self {
         let (materials, warnings) = (Vec::new(), Vec::new());
         let (obj, folder) = (obj.into(), folder.clone());
-        Self { obj, folder, materials, warnings, failure: None, known: HashSet::new(), files: HashSet::new() }
+        Self { obj, line: 0, folder, materials, warnings, failure: None, known: HashSet::new(), files: HashSet::new() }
     }
 
-    /// Reads what an `mtllib` line names: one file with spaces in its name, or several. Failures are kept.
-    pub(super) fn read(&mut self, names: &Path) -> TobjMaterials {
+    /// Reads what an `mtllib` line names: one file with spaces in its name, or several. Failures are kept. tobj counts the
+    /// materials that it is handed and finds them by name; what is in them it need not know.
+    pub(super) fn read(&mut self, names: &Path) -> tobj::MTLLoadResult {
         let before = self.materials.len();
-        let result = self.find(&names.to_string_lossy().replace('\\', "/")).and_then(|paths| {
-            paths.iter().try_fold(TobjMaterials::default(), |mut all, path| {
-                let (materials, map) = self.read_file(path)?;
-                let offset = all.0.len();
-                all.0.extend(materials);
-                all.1.extend(map.into_iter().map(|(name, i)| (name, i + offset)));
-                Ok(all)
-            })
-        });
-        result.unwrap_or_else(|failure| {
+        let files = self.find(&names.to_string_lossy().replace('\\', "/"));
+        if let Err(failure) = files.and_then(|files| files.iter().try_for_each(|file| self.read_file(file))) {
             self.failure.get_or_insert(failure);
             self.materials.truncate(before);
-            TobjMaterials::default()
-        })
+        }
+        let names = self.materials[before..].iter().map(|material| material.name.clone());
+        Ok((vec![tobj::Material::default(); names.len()], names.zip(0..).collect()))
     }
 
     /// The files behind the names, each as it is to be shown; those read before are left out.
     fn find(&mut self, names: &str) -> Result<Vec<PathBuf>> {
         let names = names.trim_matches('"');
-        let resolve =
-            |name: &str| self.folder.resolve(name, &self.obj).map_err(|reason| Error::file(&self.obj, reason));
+        let resolve = |name: &str| self.folder.resolve(name, Place { path: &self.obj, line: self.line });
         if let Some(path) = resolve(names)? {
             return Ok(self.files.insert(path).then(|| self.obj.with_file_name(names)).into_iter().collect());
         }
@@ -118,8 +106,8 @@ impl MtlFiles {
         Ok(found)
     }
 
-    fn read_file(&mut self, path: &Path) -> Result<TobjMaterials> {
-        let file = files::open(path)?;
+    fn read_file(&mut self, path: &Path) -> Result<()> {
+        let file = open_regular(path)?;
         if file.metadata().is_ok_and(|data| data.len() > MAX_MTL_BYTES) {
             return Err(Error::file(path, format!("more than {} MiB are no material file", MAX_MTL_BYTES >> 20)));
         }
@@ -127,15 +115,15 @@ impl MtlFiles {
     }
 
     /// Reads the text of one MTL file.
-    pub(super) fn read_text(&mut self, text: impl BufRead, path: &Path) -> Result<TobjMaterials> {
+    pub(super) fn read_text(&mut self, text: impl BufRead, path: &Path) -> Result<()> {
         let cleaner = MtlLines::default();
         let mut lines = CleanLines::new(text, path, cleaner);
-        let read = super::contain::contain(|| tobj::load_mtl_buf(&mut lines));
+        let read = contain(|| tobj::load_mtl_buf(&mut lines));
         if let Some(failure) = lines.failure.take() {
             return Err(failure);
         }
-        let (materials, map) = match read {
-            Some(Ok(read)) => read,
+        let materials = match read {
+            Some(Ok((materials, _))) => materials,
             Some(Err(error)) => return Err(lines.place().refuse(error)),
             None => return Err(lines.place().refuse("cannot be read")),
         };
@@ -149,7 +137,7 @@ impl MtlFiles {
             self.known.insert(material.name.clone());
             self.materials.push(material);
         }
-        Ok((materials, map))
+        Ok(())
     }
 
     fn take_apart(&mut self, from: &tobj::Material, lines: &LineNumbers, path: &Arc<Path>) -> Result<MtlMaterial> {

@@ -12,6 +12,12 @@ use std::path::{Path, PathBuf};
 /// Longest line that is read: a polygon of a million corners fits, a binary file without line ends does not fill memory.
 const MAX_LINE_BYTES: usize = 32 << 20;
 
+/// Where the OBJ's text comes from; it is read again only to find the line of an error.
+pub(super) trait Source {
+    fn path(&self) -> &Path;
+    fn reader(&self) -> Result<Box<dyn BufRead + '_>>;
+}
+
 /// What a cleaner does with a line.
 pub(super) trait Clean {
     /// Appends what tobj shall see of `text` to `out`, each line ended by `\n`; nothing leaves the line out.
@@ -28,7 +34,12 @@ pub(super) struct Place<'a> {
 impl Place<'_> {
     /// A refusal of this line.
     pub(super) fn refuse(self, reason: impl ToString) -> Error {
-        Error::Line { path: self.path.into(), line: self.line, reason: reason.to_string() }
+        Error::File { path: self.path.into(), line: Some(self.line), reason: reason.to_string(), source: None }
+    }
+
+    /// A refusal of this line, which asks for more than `option` allows.
+    pub(super) fn refuse_limit(self, reason: impl ToString, option: &'static str) -> Error {
+        Error::Limit { path: self.path.into(), line: Some(self.line), reason: reason.to_string(), option }
     }
 
     /// A one-line remark about this line.
@@ -94,7 +105,7 @@ impl<R: BufRead, C: Clean> CleanLines<R, C> {
     fn read_physical_line(&mut self) -> Result<bool> {
         let room = MAX_LINE_BYTES.saturating_sub(self.raw.len());
         let read = (&mut self.inner).take(room as u64).read_until(b'\n', &mut self.raw);
-        let num = read.map_err(|reason| Error::file(&self.path, reason))?;
+        let num = read.map_err(|reason| Error::caused(&self.path, reason))?;
         if num == room {
             return Err(self.place().refuse("the line is too long for a text file"));
         }

@@ -4,10 +4,21 @@
 //! Colours of integer formats are sRGB and become linear; floats are linear already. Heights and normals are linear.
 //! The first row of a file is the top of the picture; ours is the bottom, so rows are turned over.
 
-use super::texture_line::Channel;
 use crate::texture::{ColorImage, HeightImage, NormalImage, linear_from_srgb};
 use image::DynamicImage;
 use rayon::prelude::*;
+
+/// Which channel of an image serves as the height (`-imfchan`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Channel {
+    Red,
+    Green,
+    Blue,
+    /// The alpha channel; 1 everywhere in an image without one.
+    Matte,
+    /// Rec. 709 luma of the stored values.
+    Luma,
+}
 
 enum Values {
     Bits8(Vec<u8>),
@@ -16,7 +27,7 @@ enum Values {
 }
 
 /// A decoded image, as its file has it: top row first.
-pub(super) struct Samples {
+pub(crate) struct Samples {
     width: usize,
     height: usize,
     num_channels: usize,
@@ -25,7 +36,7 @@ pub(super) struct Samples {
 
 impl Samples {
     /// The samples of an image in any of the formats that files come in.
-    pub(super) fn new(image: DynamicImage) -> Option<Self> {
+    pub(crate) fn new(image: DynamicImage) -> Option<Self> {
         use DynamicImage as D;
         let (width, height) = (image.width() as usize, image.height() as usize);
         let num_channels = usize::from(image.color().channel_count());
@@ -77,7 +88,7 @@ impl Samples {
     }
 
     /// Whether the picture is gray, up to what a JPEG blurs: at most one texel in 200 is coloured.
-    pub(super) fn is_gray(&self) -> bool {
+    pub(crate) fn is_gray(&self) -> bool {
         // A gray JPEG stored as RGB strays by a few of 255 steps where its chroma was rounded.
         const MOST_SPREAD: f32 = 8.5 / 255.0;
         if !self.has_color() {
@@ -89,7 +100,7 @@ impl Samples {
     }
 
     /// Linear colour.
-    pub(super) fn color(&self) -> ColorImage {
+    pub(crate) fn color(&self) -> ColorImage {
         let (width, height) = (self.width as u32, self.height as u32);
         let (texels, scale) = match &self.values {
             Values::Bits8(v) => {
@@ -118,7 +129,7 @@ impl Samples {
     }
 
     /// Heights `base + gain * h`, kept within 0 to 1, of one channel.
-    pub(super) fn height(&self, channel: Option<Channel>, [base, gain]: [f32; 2]) -> HeightImage {
+    pub(crate) fn height(&self, channel: Option<Channel>, [base, gain]: [f32; 2]) -> HeightImage {
         let value = |c: &[f32]| match (channel, c) {
             (Some(Channel::Matte), [.., alpha]) if c.len().is_multiple_of(2) => *alpha,
             (Some(Channel::Matte), _) => 1.0,
@@ -134,7 +145,7 @@ impl Samples {
     }
 
     /// Normals; `strength` multiplies x and y, and `green` (1 or -1) y.
-    pub(super) fn normal(&self, strength: f32, green: f32) -> NormalImage {
+    pub(crate) fn normal(&self, strength: f32, green: f32) -> NormalImage {
         let texels = self.map(|c| {
             let [x, y, z] = [c[0], c[c.len().min(2) - 1], c[c.len().min(3) - 1]].map(|c| c.clamp(0.0, 1.0) * 2.0 - 1.0);
             let n = [x * strength, y * strength * green, z];

@@ -1,10 +1,11 @@
 //! The loaders on bytes in memory, for fuzzing: what a hostile file reaches, without the file system.
 
-use super::decode::{self, ImageLimits};
+use super::assemble::{Loaded, load_from};
 use super::files::Folder;
-use super::load::{LoadOptions, Loaded, load_from};
+use super::lines::Source;
 use super::mtl::MtlFiles;
-use super::obj::Source;
+use super::options::LoadOptions;
+use crate::decode::{self, ImageLimits};
 use crate::error::Result;
 use std::io::BufRead;
 use std::path::Path;
@@ -36,7 +37,7 @@ pub fn load_mtl_bytes(bytes: &[u8]) -> Result<Vec<String>> {
 #[doc(hidden)]
 pub fn load_image_bytes(bytes: &[u8]) -> Result<()> {
     let limits = ImageLimits { side: 1024, texels: u64::MAX, bytes: 16 << 20 };
-    let samples = decode::decode_bytes(bytes, Path::new("image.tga"), limits)?;
+    let samples = decode::samples_bytes(bytes, Path::new("image.tga"), limits)?;
     let _ = (samples.color(), samples.height(None, [0.0, 1.0]), samples.normal(1.0, 1.0), samples.is_gray());
     Ok(())
 }

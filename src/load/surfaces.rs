@@ -4,11 +4,10 @@
 //! one [`Surface`], small ones in parallel too. What all of that needs is estimated from the heads of the files before any
 //! is decoded.
 
-use super::decode::{self, ImageInfo, ImageLimits};
-use super::load::LoadOptions;
+use super::options::LoadOptions;
 use super::plan::{Kind, Map, Plan};
-use super::samples::Samples;
 use super::stage::{Counter, LoadStage, Report};
+use crate::decode::{self, ImageInfo, ImageLimits, Samples};
 use crate::error::{Error, Result};
 use crate::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps};
 use rayon::prelude::*;
@@ -26,19 +25,11 @@ const BUILD_BYTES: u64 = 8;
 /// threads, so that what is refused does not depend on the machine.
 const AT_ONCE: u64 = 1 << 23;
 
+#[derive(Clone)]
 enum MapImage {
     Color(ColorImage),
     Height(HeightImage),
     Normal(NormalImage),
-}
-
-/// The limits of one image.
-pub(super) fn image_limits(options: &LoadOptions) -> ImageLimits {
-    ImageLimits {
-        side: options.max_image_side.min(32768),
-        texels: u64::MAX,
-        bytes: u64::from(options.max_image_mib) << 20,
-    }
 }
 
 /// The surface of each plan; equal plans share one.
@@ -51,11 +42,8 @@ pub(super) fn build(
     report: &Report,
 ) -> Result<BTreeMap<Plan, Arc<Surface>>> {
     let files = kinds_by_file(plans);
-    if files.len() > options.max_textures as usize {
-        let reason = format!("the scene names {} texture files, more than {}", files.len(), options.max_textures);
-        return Err(Error::setting("max_textures", reason));
-    }
-    let limits = image_limits(options);
+    options.check_num_textures(files.len())?;
+    let limits = options.image_limits();
     let paths: Vec<&Path> = files.keys().copied().collect();
     let infos: Vec<_> = paths.par_iter().map(|path| decode::probe(path, limits)).collect();
     let infos: Vec<ImageInfo> = infos.into_iter().collect::<Result<_>>()?;
@@ -142,7 +130,7 @@ fn check_memory(plans: &BTreeSet<Plan>, infos: &BTreeMap<&Path, ImageInfo>, opti
 }
 
 fn decode_all(path: &Path, kinds: &BTreeSet<&Kind>, limits: ImageLimits) -> Result<Vec<(Map, MapImage)>> {
-    let samples = decode::decode(path, limits)?;
+    let samples = decode::samples(path, limits)?;
     let map = |kind: &Kind| (Map { path: path.into(), kind: kind.clone() }, convert(&samples, kind));
     Ok(kinds.iter().map(|kind| map(kind)).collect())
 }
@@ -167,7 +155,7 @@ fn surface_maps(
     let (wrap, relief_depth) = (plan.wrap(), plan.relief_depth());
     let mut maps = SurfaceMaps { wrap, relief_depth, keep_normals, ..SurfaceMaps::default() };
     for map in plan.maps() {
-        let image = if is_used_later(map) { images.get(map).map(MapImage::copy) } else { images.remove(map) };
+        let image = if is_used_later(map) { images.get(map).cloned() } else { images.remove(map) };
         match image {
             Some(MapImage::Color(image)) => maps.albedo = Some(image),
             Some(MapImage::Height(image)) => maps.height = Some(image),
@@ -176,14 +164,4 @@ fn surface_maps(
         }
     }
     maps
-}
-
-impl MapImage {
-    fn copy(&self) -> Self {
-        match self {
-            Self::Color(image) => Self::Color(image.clone()),
-            Self::Height(image) => Self::Height(image.clone()),
-            Self::Normal(image) => Self::Normal(image.clone()),
-        }
-    }
 }

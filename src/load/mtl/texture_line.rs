@@ -2,61 +2,52 @@
 //!
 //! Options may stand before or after the name, the name may hold spaces, and backslashes are turned into slashes.
 
-/// Which channel of an image serves as the height (`-imfchan`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Channel {
-    Red,
-    Green,
-    Blue,
-    /// The alpha channel; 1 everywhere in an image without one.
-    Matte,
-    /// Rec. 709 luma of the stored values.
-    Luma,
-}
+use crate::decode::Channel;
 
 /// A texture line taken apart.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct TextureLine {
+pub(in crate::load) struct TextureLine {
     /// The file's name with forward slashes, as far as it is relative to the file that names it.
-    pub(super) name: String,
+    pub(in crate::load) name: String,
     /// `-bm`: relief depth, or strength of a normal map.
-    pub(super) bump: Option<f32>,
+    pub(in crate::load) bump: Option<f32>,
     /// `-s`: repeats along u and v.
-    pub(super) scale: [f32; 2],
+    pub(in crate::load) scale: [f32; 2],
     /// `-o`: shift along u and v, in repeats.
-    pub(super) offset: [f32; 2],
+    pub(in crate::load) offset: [f32; 2],
     /// `-mm`: base and gain.
-    pub(super) range: [f32; 2],
+    pub(in crate::load) range: [f32; 2],
     /// `-clamp on`.
-    pub(super) is_clamped: bool,
+    pub(in crate::load) is_clamped: bool,
     /// `-imfchan`.
-    pub(super) channel: Option<Channel>,
+    pub(in crate::load) channel: Option<Channel>,
     /// Options that have no effect here, by name.
-    pub(super) unsupported: Vec<String>,
+    pub(in crate::load) unsupported: Vec<String>,
 }
 
-impl TextureLine {
-    fn plain() -> Self {
-        let (scale, offset, range) = ([1.0; 2], [0.0; 2], [0.0, 1.0]);
+impl Default for TextureLine {
+    fn default() -> Self {
         Self {
             name: String::new(),
             bump: None,
-            scale,
-            offset,
-            range,
+            scale: [1.0; 2],
+            offset: [0.0; 2],
+            range: [0.0, 1.0],
             is_clamped: false,
             channel: None,
-            unsupported: vec![],
+            unsupported: Vec::new(),
         }
     }
+}
 
+impl TextureLine {
     /// Reads what follows the keyword. An empty name is left to the caller.
     ///
     /// # Errors
     /// Names the option whose value is wrong.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
+    pub(in crate::load) fn parse(text: &str) -> Result<Self, String> {
         let words: Vec<&str> = text.split_whitespace().collect();
-        let mut line = Self::plain();
+        let mut line = Self::default();
         let mut first = 0;
         // The last word before a trailing option is the name: an option never takes it.
         while first + 1 < words.len() && is_option(words[first]) {
@@ -74,22 +65,23 @@ impl TextureLine {
     /// Takes one option and its values off the front; returns how many words these are.
     fn take_option(&mut self, words: &[&str]) -> Result<usize, String> {
         let option = words[0].to_ascii_lowercase();
-        let numbers = numbers_after(&words[1..], most_numbers(&option))?;
-        let needs = |num: usize| {
-            if numbers.len() < num { Err(format!("option {option} needs {num} number(s)")) } else { Ok(()) }
+        let values = &words[1..=num_values(&option, &words[1..])];
+        let number = |i: usize| match values.get(i).map(|word| word.parse::<f32>()) {
+            Some(Ok(number)) if number.is_finite() => Ok(number),
+            Some(_) => Err(format!("'{}' is not a finite number", values[i])),
+            None => Err(format!("option {option} needs {} number(s)", i + 1)),
         };
-        let value = words.get(1).copied().unwrap_or_default();
+        let second = |fallback: f32| if values.len() > 1 { number(1) } else { Ok(fallback) };
         match option.as_str() {
-            "-bm" => needs(1).map(|()| self.bump = Some(numbers[0]))?,
-            "-s" => needs(1).map(|()| self.scale = [numbers[0], *numbers.get(1).unwrap_or(&1.0)])?,
-            "-o" => needs(1).map(|()| self.offset = [numbers[0], *numbers.get(1).unwrap_or(&0.0)])?,
-            "-mm" => needs(2).map(|()| self.range = [numbers[0], numbers[1]])?,
-            "-clamp" => self.is_clamped = value.eq_ignore_ascii_case("on"),
-            "-imfchan" => self.channel = Some(channel(value)?),
+            "-bm" => self.bump = Some(number(0)?),
+            "-s" => self.scale = [number(0)?, second(1.0)?],
+            "-o" => self.offset = [number(0)?, second(0.0)?],
+            "-mm" => self.range = [number(0)?, number(1)?],
+            "-clamp" => self.is_clamped = values.first().is_some_and(|word| word.eq_ignore_ascii_case("on")),
+            "-imfchan" => self.channel = Some(channel(values.first().copied().unwrap_or_default())?),
             _ => self.unsupported.push(option.clone()),
         }
-        let num_words = if takes_word(&option, value) { 2 } else { numbers.len() + 1 };
-        Ok(num_words.min(words.len()))
+        Ok(1 + values.len())
     }
 }
 
@@ -113,33 +105,43 @@ fn is_all_options(words: &[&str]) -> bool {
     let mut next = 0;
     while next < words.len() {
         let option = words[next].to_ascii_lowercase();
-        if most_numbers(&option) == 0 && !takes_word(&option, "on") {
+        if matches!(values_of(&option), Values::Unknown) {
             return false;
         }
-        let values = &words[next + 1..];
-        let num_numbers = values.iter().take(most_numbers(&option)).take_while(|w| w.parse::<f32>().is_ok()).count();
-        let num_words = values.first().map_or(0, |w| usize::from(takes_word(&option, w)));
-        next += 1 + num_numbers.max(num_words);
+        next += 1 + num_values(&option, &words[next + 1..]);
     }
     true
 }
 
-/// How many numbers may follow an option.
-fn most_numbers(option: &str) -> usize {
+/// What may follow an option.
+enum Values {
+    /// So many numbers at most.
+    Numbers(usize),
+    /// `on` or `off`.
+    Switch,
+    Word,
+    /// Nothing is known of the option.
+    Unknown,
+}
+
+fn values_of(option: &str) -> Values {
     match option {
-        "-s" | "-o" | "-t" => 3,
-        "-mm" => 2,
-        "-bm" | "-boost" | "-texres" => 1,
-        _ => 0,
+        "-s" | "-o" | "-t" => Values::Numbers(3),
+        "-mm" => Values::Numbers(2),
+        "-bm" | "-boost" | "-texres" => Values::Numbers(1),
+        "-clamp" | "-blendu" | "-blendv" | "-cc" => Values::Switch,
+        "-imfchan" | "-type" | "-colorspace" => Values::Word,
+        _ => Values::Unknown,
     }
 }
 
-/// Whether `word` is the value, not a number, of an option.
-fn takes_word(option: &str, word: &str) -> bool {
-    match option {
-        "-clamp" | "-blendu" | "-blendv" | "-cc" => is_switch(word),
-        "-imfchan" | "-type" | "-colorspace" => true,
-        _ => false,
+/// How many of `words` are values of the option before them.
+fn num_values(option: &str, words: &[&str]) -> usize {
+    match values_of(option) {
+        Values::Numbers(most) => words.iter().take(most).take_while(|word| word.parse::<f32>().is_ok()).count(),
+        Values::Switch => usize::from(words.first().is_some_and(|word| is_switch(word))),
+        Values::Word => words.len().min(1),
+        Values::Unknown => 0,
     }
 }
 
@@ -157,17 +159,6 @@ fn channel(word: &str) -> Result<Channel, String> {
         "l" => Ok(Channel::Luma),
         _ => Err(format!("option -imfchan takes r, g, b, m, l or z, not '{word}'")),
     }
-}
-
-fn numbers_after(words: &[&str], most: usize) -> Result<Vec<f32>, String> {
-    let parsed = words.iter().take(most).map_while(|word| word.parse::<f32>().ok().map(|number| (word, number)));
-    parsed
-        .map(
-            |(word, number)| {
-                if number.is_finite() { Ok(number) } else { Err(format!("'{word}' is not a finite number")) }
-            },
-        )
-        .collect()
 }
 
 #[cfg(test)]

@@ -1,124 +1,21 @@
-//! OBJ, MTL and images to a validated scene.
-//!
-//! `lines` cleans the text for tobj, `obj` and `mtl` read it, `plan` decides which image serves as what, `decode` and
-//! `surfaces` make the textures, and [`load`] puts the scene together. Files are not trusted: every limit is a field of
-//! [`LoadOptions`], and a panic of a decoder becomes an error.
+//! All that a scene is read from, put together.
 
-use super::files::{self, Folder};
+use super::files::Folder;
+use super::lines::Source;
 use super::mtl::{MtlFiles, MtlMaterial};
-use super::obj::{self, Source};
+use super::obj::{self, locate};
+use super::options::{LoadOptions, MaterialOptions};
 use super::plan::{Plan, Planner};
 use super::stage::{LoadStage, Report};
-use super::{Camera, Light, Material, Mesh, Scene, locate, models, surfaces};
+use super::{models, surfaces};
+use crate::decode::open_regular;
 use crate::error::{Error, Result};
-use crate::texture::Wrap;
+use crate::scene::{Camera, Light, Material, Mesh, Scene};
 use glam::Vec3;
 use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashSet};
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
-
-/// Which end of a height map's range is high.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum HeightSense {
-    /// White lies on the polygon.
-    #[default]
-    WhiteHigh,
-    /// White is deepest (a depth map).
-    WhiteDeep,
-}
-
-/// Where a normal map's green points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum NormalY {
-    /// Upwards in the image, as OpenGL, glTF and Blender have it.
-    #[default]
-    Up,
-    /// Downwards in the image, as DirectX and Unreal have it.
-    Down,
-}
-
-/// What the caller says of materials in place of their file. `None`, the default, leaves it to the file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MaterialOptions {
-    /// Colour map for materials with texture coordinates.
-    pub albedo: Option<PathBuf>,
-    /// Height map for materials with texture coordinates.
-    pub height: Option<PathBuf>,
-    /// Normal map for materials with texture coordinates.
-    pub normal: Option<PathBuf>,
-    /// Which end of the height map is high; `None`: white.
-    pub height_sense: Option<HeightSense>,
-    /// Relief depth in texture repeats, 0 to 1; `None`: `-bm` of the height map in the MTL, else 0.05.
-    pub relief_depth: Option<f32>,
-    /// Where the normal map's green points; `None`: up.
-    pub normal_y: Option<NormalY>,
-    /// What lies beyond a texture's edges; `None`: clamp where the MTL says `-clamp on`, else repeat.
-    pub wrap: Option<Wrap>,
-    /// Diffuse colour, linear RGB, 0 to 1e6; `None`: `Kd`, else 1.
-    pub diffuse: Option<Vec3>,
-    /// Colour of highlights, linear RGB, 0 to 1e6; `None`: `Ks`, else 0.
-    pub specular: Option<Vec3>,
-    /// Blinn-Phong exponent, 0 to 1e4; `None`: `Ns`, else 32.
-    pub shininess: Option<f32>,
-}
-
-impl MaterialOptions {
-    /// These options, and those of `other` where these say nothing.
-    #[must_use]
-    pub fn or(self, other: &Self) -> Self {
-        Self {
-            albedo: self.albedo.or_else(|| other.albedo.clone()),
-            height: self.height.or_else(|| other.height.clone()),
-            normal: self.normal.or_else(|| other.normal.clone()),
-            height_sense: self.height_sense.or(other.height_sense),
-            relief_depth: self.relief_depth.or(other.relief_depth),
-            normal_y: self.normal_y.or(other.normal_y),
-            wrap: self.wrap.or(other.wrap),
-            diffuse: self.diffuse.or(other.diffuse),
-            specular: self.specular.or(other.specular),
-            shininess: self.shininess.or(other.shininess),
-        }
-    }
-}
-
-/// How [`load`] reads a scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadOptions {
-    /// What is said of all materials. Default: nothing.
-    pub all: MaterialOptions,
-    /// What is said of single materials, by their names, before what is said of all. Default: nothing.
-    pub materials: BTreeMap<String, MaterialOptions>,
-    /// Whether surfaces keep normals, which only lighting needs. Default: `false`.
-    pub keep_normals: bool,
-    /// Whether files that lie outside the OBJ's folder, also by a link, may be read when a material names them.
-    /// Files that the caller names may lie anywhere. Default: `false`.
-    pub allow_outside: bool,
-    /// Most texels a side of an image, 1 to 32768. Default: 32768.
-    pub max_image_side: u32,
-    /// Most memory, in MiB, that all textures may take together while they are decoded and packed, by an estimate from
-    /// the heads of the files: about 60 bytes a texel. Default: 1024, room for one material of 4096 x 4096 texels.
-    pub max_image_mib: u32,
-    /// Most triangles, and most `v`, `vt` and `vn` lines each. Default: 50 million.
-    pub max_triangles: u64,
-    /// Most texture files. Default: 1024.
-    pub max_textures: u32,
-}
-
-impl Default for LoadOptions {
-    fn default() -> Self {
-        Self {
-            all: MaterialOptions::default(),
-            materials: BTreeMap::new(),
-            keep_normals: false,
-            allow_outside: false,
-            max_image_side: 32768,
-            max_image_mib: 1024,
-            max_triangles: 50_000_000,
-            max_textures: 1024,
-        }
-    }
-}
+use std::path::Path;
 
 /// A scene and what its reader should know of how it was read.
 #[derive(Clone, Debug, Default)]
@@ -134,7 +31,8 @@ pub struct Loaded {
 /// Reads an OBJ file with its MTL files and images.
 ///
 /// A missing MTL or texture that a file names is a warning, and the plain colour is drawn. Meshes without texture
-/// coordinates are drawn in their plain colour too. Normals are made where the file has none.
+/// coordinates are drawn in their plain colour too. Normals are made where the file has none, see
+/// [`LoadOptions::crease_angle`].
 ///
 /// # Errors
 /// Names the file, and the line where one is wrong, or the option or limit that refuses it.
@@ -147,7 +45,7 @@ pub fn load(obj: &Path, options: &LoadOptions) -> Result<Loaded> {
 /// # Errors
 /// As [`load`].
 pub fn load_reporting(obj: &Path, options: &LoadOptions, report: &(dyn Fn(LoadStage) + Sync)) -> Result<Loaded> {
-    files::open(obj)?;
+    open_regular(obj)?;
     load_from(&ObjFile(obj), &Folder::of(obj, options.allow_outside), options, report)
 }
 
@@ -158,7 +56,7 @@ impl Source for ObjFile<'_> {
         self.0
     }
     fn reader(&self) -> Result<Box<dyn BufRead + '_>> {
-        Ok(Box::new(BufReader::with_capacity(1 << 18, files::open(self.0)?)))
+        Ok(Box::new(BufReader::with_capacity(1 << 18, open_regular(self.0)?)))
     }
 }
 
@@ -169,10 +67,7 @@ pub(super) fn load_from(
     options: &LoadOptions,
     report: &Report,
 ) -> Result<Loaded> {
-    let mut depths = options.materials.values().chain([&options.all]).map(|given| given.relief_depth);
-    if depths.any(|depth| depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth))) {
-        return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
-    }
+    options.check()?;
     report(LoadStage::Model);
     let mtl = RefCell::new(MtlFiles::new(source.path(), folder));
     let models = obj::read(source, options.max_triangles, &mtl)?;
@@ -184,7 +79,8 @@ pub(super) fn load_from(
         );
     }
     models::remark_placements(&materials, &mut warnings);
-    let meshes = models::finish(meshes, &materials).map_err(|reason| Error::file(source.path(), reason))?;
+    let meshes = models::finish(meshes, &materials, options.crease_angle)
+        .map_err(|reason| Error::file(source.path(), reason))?;
     if meshes.iter().any(|mesh| mesh.material == materials.len()) {
         materials.push(MtlMaterial { name: "none".into(), ..MtlMaterial::default() });
     }
@@ -198,7 +94,7 @@ pub(super) fn load_from(
         Material { surface, ..plain_material(material, &own.or(&options.all)) }
     });
     let mut scene = Scene { meshes, materials: materials.collect(), ..Scene::default() };
-    frame(&mut scene);
+    frame(&mut scene, options.aspect);
     scene.validate()?;
     let mut seen = HashSet::new();
     warnings.retain(|warning| seen.insert(warning.clone()));
@@ -251,10 +147,10 @@ fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
 }
 
 /// A camera that sees all of the scene, and light from over its left shoulder.
-fn frame(scene: &mut Scene) {
+fn frame(scene: &mut Scene, aspect: f32) {
     let points = || scene.meshes.iter().flat_map(|mesh| &mesh.positions);
     let (min, max) = points().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| (min.min(*p), max.max(*p)));
-    scene.camera = Camera::framing(min, max);
+    scene.camera = Camera::framing(min, max, aspect);
     let [right, up, forward] = scene.camera.axes();
     let to_light = up * 0.8 - right * 0.6 - forward * 0.6;
     scene.lights = vec![Light::Directional { to_light, intensity: Vec3::splat(0.85) }];

@@ -3,12 +3,10 @@
 //! Height: the caller's file, else `disp`/`map_disp`, else `bump`/`map_bump` when that image is gray. A coloured bump is
 //! a normal map, as `norm`/`map_Kn` is. Every choice is put into words.
 
-use super::decode;
-use super::files::{self, Folder};
-use super::load::{HeightSense, LoadOptions, MaterialOptions, NormalY};
+use super::files::Folder;
 use super::mtl::{MtlMaterial, TextureRef};
-use super::surfaces::image_limits;
-use super::texture_line::Channel;
+use super::options::{HeightSense, LoadOptions, MaterialOptions, NormalY};
+use crate::decode::{self, Channel, open_regular};
 use crate::error::{Error, Result};
 use crate::texture::Wrap;
 use rayon::prelude::*;
@@ -18,6 +16,9 @@ use std::path::{Path, PathBuf};
 
 /// Relief depth in texture repeats where nothing says otherwise.
 const DEFAULT_DEPTH: f32 = 0.05;
+
+/// In the order of plans.
+const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
 
 /// An image file and how it is read.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,8 +49,9 @@ pub(super) struct Plan {
     albedo: Option<Map>,
     height: Option<Map>,
     normal: Option<Map>,
-    /// 0 repeat, 1 mirror, 2 clamp.
-    wrap: u8,
+    /// Index into [`WRAPS`].
+    wrap: usize,
+    /// The relief depth as bits.
     depth: u32,
 }
 
@@ -60,7 +62,7 @@ impl Plan {
     }
 
     pub(super) fn wrap(&self) -> Wrap {
-        [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp][usize::from(self.wrap)]
+        WRAPS[self.wrap]
     }
 
     /// Whether there is anything to take normals from.
@@ -102,7 +104,8 @@ impl<'a> Planner<'a> {
         let of_one = of_one.collect::<Result<_>>()?;
         let (is_gray, choices, warnings) = Default::default();
         let mut planner = Self { options, folder, of_all, of_one, is_gray, choices, warnings };
-        planner.note_replacements();
+        planner.note("every material", &options.all);
+        options.materials.iter().for_each(|(name, own)| planner.note(&format!("material {name}"), own));
         planner.look_at_bumps(materials)?;
         Ok(planner)
     }
@@ -111,13 +114,7 @@ impl<'a> Planner<'a> {
         self.of_one.get(material.name.as_str()).unwrap_or(&self.of_all)
     }
 
-    fn note_replacements(&mut self) {
-        self.note("every material", &self.options.all);
-        for (name, own) in &self.options.materials {
-            self.note(&format!("material {name}"), own);
-        }
-    }
-
+    /// Notes the files that the caller names.
     fn note(&mut self, whose: &str, given: &MaterialOptions) {
         for (what, path) in [("colour", &given.albedo), ("height", &given.height), ("normals", &given.normal)] {
             if let Some(path) = path {
@@ -126,11 +123,12 @@ impl<'a> Planner<'a> {
         }
     }
 
+    /// Finds out which images of `bump` lines are gray, where that decides what they serve as.
     fn look_at_bumps(&mut self, materials: &[&MtlMaterial]) -> Result<()> {
         let mut paths = BTreeSet::new();
         for material in materials {
             let Some(bump) = material.bump.as_ref().filter(|bump| bump.texture.channel.is_none()) else { continue };
-            let find = |map: &TextureRef| self.folder.resolve(&map.texture.name, &map.path).ok().flatten();
+            let find = |map: &TextureRef| self.folder.resolve(&map.texture.name, map.place()).ok().flatten();
             let has_height = self.given(material).height.is_some() || material.height.as_ref().and_then(find).is_some();
             // Where both height and normals are settled without it, the image need not be read.
             if !has_height || self.wants_normals(material) {
@@ -138,15 +136,11 @@ impl<'a> Planner<'a> {
             }
         }
         let paths: Vec<_> = paths.into_iter().collect();
-        if paths.len() > self.options.max_textures as usize {
-            let reason =
-                format!("the scene names {} texture files, more than {}", paths.len(), self.options.max_textures);
-            return Err(Error::setting("max_textures", reason));
-        }
-        let limits = image_limits(self.options);
+        self.options.check_num_textures(paths.len())?;
+        let limits = self.options.image_limits();
         let is_gray: Vec<Result<bool>> = paths
             .par_iter()
-            .map(|path| Ok(decode::probe(path, limits)?.is_gray_format() || decode::decode(path, limits)?.is_gray()))
+            .map(|path| Ok(decode::probe(path, limits)?.is_gray_format() || decode::samples(path, limits)?.is_gray()))
             .collect();
         for (path, is_gray) in paths.into_iter().zip(is_gray) {
             self.is_gray.insert(path, is_gray?);
@@ -173,12 +167,9 @@ impl<'a> Planner<'a> {
         };
         let (height, depth, height_clamped) = self.height(material, bump_height)?;
         let normal = self.normal(material, bump_normal)?;
-        let wrap = self.given(material).wrap.unwrap_or(if albedo_clamped || height_clamped {
-            Wrap::Clamp
-        } else {
-            Wrap::Repeat
-        });
-        let wrap = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp].iter().position(|w| *w == wrap).unwrap_or_default() as u8;
+        let fallback = if albedo_clamped || height_clamped { Wrap::Clamp } else { Wrap::Repeat };
+        let wrap = self.given(material).wrap.unwrap_or(fallback);
+        let wrap = WRAPS.iter().position(|w| *w == wrap).unwrap_or_default();
         let plan = Plan { albedo, height, normal, wrap, depth: depth.to_bits() };
         let has_maps = plan.maps().next().is_some();
         Ok(has_maps.then_some(plan))
@@ -190,7 +181,7 @@ impl<'a> Planner<'a> {
             return Ok(None);
         };
         let name = &texture.texture.name;
-        let path = self.folder.resolve(name, &texture.path).map_err(|reason| texture.place().refuse(reason))?;
+        let path = self.folder.resolve(name, texture.place())?;
         if path.is_none() {
             let text = format_args!("{} '{name}' is missing; drawn without it", texture.keyword);
             self.warnings.push(texture.place().remark(text));
@@ -268,6 +259,6 @@ fn with_real_paths(given: &MaterialOptions) -> Result<MaterialOptions> {
 
 /// The path of a file that the caller named.
 fn real_path(path: &Path) -> Result<PathBuf> {
-    files::open(path)?;
-    fs::canonicalize(path).map_err(|error| Error::file(path, files::plain(&error)))
+    open_regular(path)?;
+    fs::canonicalize(path).map_err(|error| Error::caused(path, error))
 }

@@ -1,68 +1,15 @@
-//! An OBJ file, through tobj, to models of triangles.
+//! The lines of an OBJ file, put right where tobj stumbles over them.
 //!
-//! [`ObjLines`] puts the lines right that tobj stumbles over: lines and points are left out (tobj makes triangles of
-//! long `l` lines), comments behind numbers are cut, colours behind positions are dropped, indices of 0 or before the
-//! first are refused, and a model is split where its faces begin or cease to have texture coordinates or normals,
-//! since tobj keeps no record of which vertex went without.
+//! Lines and points are left out (tobj makes triangles of long `l` lines), comments behind numbers are cut, colours
+//! behind positions are dropped, indices of 0 or before the first are refused, and a model is split where its faces
+//! begin or cease to have texture coordinates or normals, since tobj keeps no record of which vertex went without.
 
-use super::lines::{Clean, CleanLines, Place};
-use super::locate;
-use super::mtl::MtlFiles;
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::load::lines::{Clean, Place};
+use crate::load::mtl::MtlFiles;
 use std::cell::RefCell;
 use std::fmt::Write as _;
-use std::io::BufRead;
 use std::path::Path;
-
-/// Where the OBJ's text comes from; it is read again only to find the line of an error.
-pub(super) trait Source {
-    fn path(&self) -> &Path;
-    fn reader(&self) -> Result<Box<dyn BufRead + '_>>;
-}
-
-/// Reads all models; their `material_id` is an index into the materials of `mtl`.
-///
-/// # Errors
-/// Names the line that is wrong, or the file when it has no faces.
-pub(super) fn read(source: &dyn Source, max_triangles: u64, mtl: &RefCell<MtlFiles>) -> Result<Vec<tobj::Model>> {
-    let cleaner = ObjLines::new(max_triangles, Some(mtl));
-    let mut lines = CleanLines::new(source.reader()?, source.path(), cleaner);
-    let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
-    let read =
-        super::contain::contain(|| tobj::load_obj_buf(&mut lines, &options, |name| Ok(mtl.borrow_mut().read(name))));
-    if let Some(failure) = lines.failure.take().or_else(|| mtl.borrow_mut().failure.take()) {
-        return Err(failure);
-    }
-    let models = match read {
-        Some(Ok((models, _))) => models,
-        Some(Err(error)) => return Err(refusal(error, lines.place(), source)),
-        None => {
-            return Err(locate::bad_index(source).unwrap_or_else(|| lines.place().refuse("cannot be read")));
-        }
-    };
-    lines.cleaner.check_lists(source.path())?;
-    let models: Vec<_> = models.into_iter().filter(|model| !model.mesh.indices.is_empty()).collect();
-    if models.is_empty() {
-        return Err(Error::file(source.path(), "has no faces"));
-    }
-    Ok(models)
-}
-
-fn refusal(error: tobj::LoadError, place: Place<'_>, source: &dyn Source) -> Error {
-    use tobj::LoadError as E;
-    let reason = match error {
-        E::PositionParseError => "'v' needs three numbers",
-        E::ScalingByZeroError => "the fourth number of 'v' must not be 0",
-        E::TexcoordParseError => "'vt' needs two numbers",
-        E::NormalParseError => "'vn' needs three numbers",
-        E::FaceParseError => "a face needs corners such as 1, 1/2, 1//3 or 1/2/3",
-        E::FaceVertexOutOfBounds | E::FaceTexCoordOutOfBounds | E::FaceNormalOutOfBounds => {
-            return locate::bad_index(source).unwrap_or_else(|| Error::file(source.path(), error));
-        }
-        _ => return place.refuse(error),
-    };
-    place.refuse(reason)
-}
 
 /// What the corners of a face name besides positions.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -103,7 +50,7 @@ impl<'a> ObjLines<'a> {
     }
 
     /// Faces may not name texture coordinates or normals in a file that has none; tobj lets that pass.
-    fn check_lists(&self, path: &Path) -> Result<()> {
+    pub(super) fn check_lists(&self, path: &Path) -> Result<()> {
         let place = |line| Place { path, line };
         if self.num_tex_coords == 0 && self.first_with_tex_coords > 0 {
             return Err(place(self.first_with_tex_coords).refuse("names texture coordinates, and the file has none"));
@@ -123,7 +70,7 @@ impl<'a> ObjLines<'a> {
         };
         *num += 1;
         if *num > self.max_triangles {
-            return Err(at.refuse(format!("more than {} vertices (max_triangles)", self.max_triangles)));
+            return Err(at.refuse_limit(format!("more than {} vertices", self.max_triangles), "max_triangles"));
         }
         Ok(())
     }
@@ -135,7 +82,7 @@ impl<'a> ObjLines<'a> {
         }
         self.num_triangles += scan.num - 2;
         if self.num_triangles > self.max_triangles {
-            return Err(at.refuse(format!("more than {} triangles (max_triangles)", self.max_triangles)));
+            return Err(at.refuse_limit(format!("more than {} triangles", self.max_triangles), "max_triangles"));
         }
         let corners = self.note(&scan, at.line);
         if self.corners.replace(corners).is_some_and(|before| before != corners) {
@@ -267,7 +214,12 @@ impl Clean for ObjLines<'_> {
                 self.name = rest.trim().into();
                 let _ = writeln!(out, "o {}", self.name);
             }
-            "mtllib" => _ = writeln!(out, "mtllib {}", rest.trim()),
+            "mtllib" => {
+                if let Some(mtl) = self.mtl {
+                    mtl.borrow_mut().line = at.line;
+                }
+                let _ = writeln!(out, "mtllib {}", rest.trim());
+            }
             "usemtl" if !rest.trim().is_empty() => {
                 if let Some(mtl) = self.mtl {
                     mtl.borrow_mut().remark_unknown(rest.trim(), at);
