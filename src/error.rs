@@ -119,7 +119,12 @@ fn plain(cause: &Cause) -> String {
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Refuses a setting that is not within its range.
-pub(crate) fn within<T: Copy + PartialOrd + std::fmt::Display>(name: &'static str, value: T, least: T, most: T) -> Result<()> {
+pub(crate) fn within<T: Copy + PartialOrd + std::fmt::Display>(
+    name: &'static str,
+    value: T,
+    least: T,
+    most: T,
+) -> Result<()> {
     if (least..=most).contains(&value) {
         return Ok(());
     }

@@ -140,7 +140,7 @@ pub use frame::Frame;
 pub use render::{DrawnPixel, Renderer, Stats, render};
 pub use scene::{Camera, Light, Material, Mesh, Scene};
 pub use settings::{
-    Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, Lighting, RECONSTRUCTION, Rays, Region, Settings, Trilinear,
-    Visibility, Visible,
+    Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, Lighting, RECONSTRUCTION, Rays, Region, Settings,
+    Trilinear, Visibility, Visible,
 };
 pub use simd::LEVEL as SIMD_LEVEL;

@@ -247,13 +247,13 @@ pub struct Blend(wide::i16x16);
 
 impl Blend {
     /// For a place between near (0) and far (just under 1), per lane.
-        pub fn new(part: f32x8) -> Self {
+    pub fn new(part: f32x8) -> Self {
         let part = as_unsigned((part * 32767.0).fast_trunc_int());
         Self(wide::bytemuck::cast(part | part << 16_u32))
     }
 
     /// The words between `near` and `far`, each half within those of the two.
-        pub fn mix(self, [near, far]: [u32x8; 2]) -> u32x8 {
+    pub fn mix(self, [near, far]: [u32x8; 2]) -> u32x8 {
         let (near, far): (wide::i16x16, wide::i16x16) = (wide::bytemuck::cast(near), wide::bytemuck::cast(far));
         wide::bytemuck::cast(near + (far - near).mul_scale_round(self.0))
     }
@@ -265,14 +265,14 @@ pub struct LineBlend([Blend; 2]);
 
 impl LineBlend {
     /// See [`Blend::new`].
-        #[inline(always)]
+    #[inline(always)]
     pub fn new(part: f32x16) -> Self {
         let part: u32x16 = wide::bytemuck::cast((part * 32767.0).fast_trunc_int());
         Self(halves(part | part << 16_u32).map(|half| Blend(wide::bytemuck::cast(half))))
     }
 
     /// See [`Blend::mix`].
-        #[inline(always)]
+    #[inline(always)]
     pub fn mix(self, [near, far]: [u32x16; 2]) -> u32x16 {
         let (near, far) = (halves(near), halves(far));
         wide::bytemuck::cast([0, 1].map(|i| self.0[i].mix([near[i], far[i]])))

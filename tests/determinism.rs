@@ -111,7 +111,12 @@ fn cases() -> Vec<Case> {
     add("default", Wrap::Repeat, default.clone());
     add("default, lit", Wrap::Repeat, Settings { lighting: Lighting::Lit, ..default });
     // Only maps of more than 128 x 128 texels have tables of what is seen from afar.
-    cases.push(("far field".into(), Wrap::Repeat, 200, small(Filter::Horizon(Horizon { far_field_mib: 1, ..horizon }))));
+    cases.push((
+        "far field".into(),
+        Wrap::Repeat,
+        200,
+        small(Filter::Horizon(Horizon { far_field_mib: 1, ..horizon })),
+    ));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, small(Filter::Horizon(horizon))));
     // Texels a side that are no power of two wrap by a division.
     for (name, filter) in [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa))] {

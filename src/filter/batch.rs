@@ -85,10 +85,6 @@ impl std::ops::AddAssign for Work {
 }
 
 /// Filters the covered pixels one by one.
-pub(super) fn each_covered(
-    batch: &Batch,
-    out: &mut [Filtered],
-    mut filter: impl FnMut(&Footprints, usize) -> Texel,
-) {
+pub(super) fn each_covered(batch: &Batch, out: &mut [Filtered], mut filter: impl FnMut(&Footprints, usize) -> Texel) {
     batch.covered().for_each(|(vector, pixels, lane)| out[vector].set(lane, &filter(pixels, lane)));
 }

@@ -12,7 +12,7 @@ use crate::texture::{Level, Surface, Texel};
 const NUM_STEPS: u16 = 32;
 
 /// Offsets from the pixel's centre, in pixels, of `num` samples: a lattice, turned by the golden ratio.
-pub fn offsets(num: u32) -> Vec<[f32; 2]> {
+pub(super) fn offsets(num: u32) -> Vec<[f32; 2]> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let place = |i: u32| {
         let golden = f64::from(i) * GOLDEN + 0.5;
@@ -22,7 +22,7 @@ pub fn offsets(num: u32) -> Vec<[f32; 2]> {
 }
 
 /// The texel that the ray of a sample, one of so many a pixel, finds.
-pub fn trace(surface: &Surface, footprint: &Footprint, num_samples: u32) -> Texel {
+pub(super) fn trace(surface: &Surface, footprint: &Footprint, num_samples: u32) -> Texel {
     let Footprint { base, displacement, .. } = *footprint;
     let size = levels::parallax_size(surface.base(), footprint, num_samples);
     let place = |depth: f32| [base[0] + displacement[0] * depth, base[1] + displacement[1] * depth];

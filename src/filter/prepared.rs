@@ -31,11 +31,7 @@ impl Prepared {
     pub fn new(surface: impl Into<Arc<Surface>>) -> Self {
         let surface = surface.into();
         let relief = (surface.relief_depth() > 0.0).then(|| {
-            Arc::new(Relief {
-                field: HeightField::new(&surface),
-                loss: OnceLock::new(),
-                far: Mutex::default(),
-            })
+            Arc::new(Relief { field: HeightField::new(&surface), loss: OnceLock::new(), far: Mutex::default() })
         });
         Self { surface, relief, has_far_field: true }
     }

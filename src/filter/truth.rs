@@ -12,7 +12,7 @@ use crate::texture::{Surface, Texel};
 const GOLDEN_TURN: [f64; 2] = [-0.737_368_878_078_319_8, 0.675_490_294_261_523_7];
 
 /// Offsets of `num` samples from the pixel's centre, in pixels.
-pub fn offsets(num: u32) -> Vec<[f32; 2]> {
+pub(super) fn offsets(num: u32) -> Vec<[f32; 2]> {
     // 1 - exp(-2), the part of the whole Gaussian that the disc holds.
     let edge = 0.864_664_716_763_387_3;
     let mut turn = [1.0_f64, 0.0];
@@ -37,7 +37,7 @@ fn ln(y: f64) -> f64 {
 }
 
 /// Colour and normal of the base level, bilinear at a place in repeats.
-pub fn sample(surface: &Surface, place: [f32; 2]) -> Texel {
+pub(super) fn sample(surface: &Surface, place: [f32; 2]) -> Texel {
     let level = surface.base();
     let [u, v] = level.in_texels(place).map(|c| c - 0.5);
     let (x, y) = (u.floor(), v.floor());

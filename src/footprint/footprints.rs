@@ -78,7 +78,8 @@ impl Footprints {
     /// Up to eight pixels, all filtered. Any numbers are made finite and bounded.
     pub fn pack(pixels: &[Footprint]) -> Self {
         let lanes = |of: &dyn Fn(&Footprint) -> [f32; 2]| {
-            [0, 1].map(|axis| PixelLanes::new(std::array::from_fn(|lane| pixels.get(lane).map_or(0.0, |p| of(p)[axis]))))
+            [0, 1]
+                .map(|axis| PixelLanes::new(std::array::from_fn(|lane| pixels.get(lane).map_or(0.0, |p| of(p)[axis]))))
         };
         let [base, hit] = [lanes(&|p| p.base), lanes(&|p| p.hit)];
         let [dx, dy, displacement] = [lanes(&|p| p.dx), lanes(&|p| p.dy), lanes(&|p| p.displacement)];

@@ -153,14 +153,15 @@ impl Probe<'_> {
             vec![Default::default(); footprints.len()]
         };
         let pairs = block.pairs().zip(footprints.iter().zip(choices));
-        pairs.map(|(pair, (footprints, choices))| {
-            let pixels = Quads::new(pair.uv, pair.view(), prepared.field()).pixels();
-            each_covered(&pair, |lane| {
-                let seen = Seen { pixel: pixels[lane], footprint: footprints.lane(lane), choice: choices[lane] };
-                self.value(&pair, prepared, &seen)
+        pairs
+            .map(|(pair, (footprints, choices))| {
+                let pixels = Quads::new(pair.uv, pair.view(), prepared.field()).pixels();
+                each_covered(&pair, |lane| {
+                    let seen = Seen { pixel: pixels[lane], footprint: footprints.lane(lane), choice: choices[lane] };
+                    self.value(&pair, prepared, &seen)
+                })
             })
-        })
-        .collect()
+            .collect()
     }
 
     /// Pixels of a material without a texture. How many triangles there are is counted, not measured.

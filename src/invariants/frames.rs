@@ -1,6 +1,6 @@
 //! What must hold of marches, coverage and whole frames.
 
-use super::{Checked, ensure};
+use super::check::{Checked, ensure};
 use crate::footprint::Footprint;
 use crate::geometry::project;
 use crate::raster::hit_counts;

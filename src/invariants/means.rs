@@ -1,6 +1,7 @@
 //! What holds of any weighted mean of texels: linear in the texture, the same for the same ellipse, untouched by flat relief.
 
-use super::{Checked, difference, ensure, filtered};
+use super::check::{Checked, difference, ensure};
+use super::pixel::filtered;
 use crate::footprint::Footprint;
 use crate::settings::{Filter, Visible};
 use crate::texture::{ColorImage, HeightImage, Surface, SurfaceMaps};

@@ -23,6 +23,7 @@
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 
+mod check;
 mod frames;
 mod means;
 mod pixel;
@@ -31,22 +32,10 @@ mod symmetry;
 mod weights;
 
 pub use crate::footprint::Footprint;
+pub use check::Checked;
 pub use frames::{fan_is_hit_once, frame_is_finite, march_finds_first_hit};
 pub use means::{flat_relief_hides_nothing, linear_in_texture, same_for_same_ellipse};
 pub use pixel::{anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels, work_is_bounded};
 pub use sets::visible_sets;
 pub use symmetry::{mirrored, same_when_scaled, shifted, turned};
 pub use weights::{horizon_weights, records_are_visible};
-
-/// What a check says: nothing, or what broke.
-pub type Checked = Result<(), String>;
-
-/// `Ok` where the claim holds, else what `message` says.
-fn ensure(holds: bool, message: impl FnOnce() -> String) -> Checked {
-    if holds { Ok(()) } else { Err(message()) }
-}
-
-/// The largest difference of two colours.
-fn difference(a: [f32; 3], b: [f32; 3]) -> f32 {
-    (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max)
-}

@@ -1,6 +1,6 @@
 //! A pixel in texture space, and what must hold of its ellipse and colour.
 
-use super::{Checked, ensure};
+use super::check::{Checked, ensure};
 use crate::filter::visible::{self, TexelSet};
 use crate::filter::{Prepared, ewa};
 use crate::footprint::levels::{MAX_TEXELS, within_budget};

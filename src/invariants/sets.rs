@@ -1,6 +1,6 @@
 //! The paper's sets of texels.
 
-use super::{Checked, ensure};
+use super::check::{Checked, ensure};
 use crate::filter::points;
 use crate::filter::visible::{self, Occlusion, TexelSet, remove_hidden};
 use crate::footprint::Footprint;

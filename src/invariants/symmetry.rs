@@ -3,8 +3,9 @@
 //! Sums run over the same texels in another order, so colours agree up to rounding; but rounding also decides which texels
 //! on the very edge of an ellipse belong to it, so the callers state the tolerance.
 
+use super::check::{Checked, difference, ensure};
+use super::pixel::filtered;
 use super::pixel::on_base_level;
-use super::{Checked, difference, ensure, filtered};
 use crate::filter::visible::{Occlusion, TexelSet, remove_hidden};
 use crate::footprint::Footprint;
 use crate::reference::{RAY_TIE, ray_margin};

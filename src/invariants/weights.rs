@@ -1,9 +1,10 @@
 //! The weights of the floating horizon, seen through textures in which one texel at a time is lit.
 
+use super::check::{Checked, ensure};
+use super::pixel::filtered;
 use super::pixel::on_base_level;
-use super::{Checked, ensure, filtered};
-use crate::reference::{Conic, Lines, RAY_TIE, ray_margin, texels};
 use crate::footprint::Footprint;
+use crate::reference::{Conic, Lines, RAY_TIE, ray_margin, texels};
 use crate::settings::{Filter, Horizon};
 use crate::texture::{ColorImage, Surface, SurfaceMaps};
 

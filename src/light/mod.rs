@@ -35,7 +35,7 @@ pub struct SurfacePoint {
 
 impl LocalLights {
     /// The lights at a point seen from `eye`. A surface seen from behind is lit on that side.
-        pub fn at(point: &SurfacePoint, eye: Vec3, lights: &[Light], ambient: Vec3) -> Self {
+    pub fn at(point: &SurfacePoint, eye: Vec3, lights: &[Light], ambient: Vec3) -> Self {
         let to_eye = (eye - point.position).normalize_or_zero();
         let normal = point.normal.normalize_or(Vec3::Z);
         let normal = if normal.dot(to_eye) < 0.0 { -normal } else { normal };
@@ -55,14 +55,14 @@ impl LocalLights {
     }
 
     /// What an albedo of 1 is multiplied with under a unit normal.
-        pub fn diffuse(&self, normal: Vec3) -> Vec3 {
+    pub fn diffuse(&self, normal: Vec3) -> Vec3 {
         self.lights
             .iter()
             .fold(self.ambient, |sum, (to_light, intensity)| sum + *intensity * normal.dot(*to_light).max(0.0))
     }
 
     /// The highlights of a mean normal.
-        pub fn specular(&self, mean_normal: Vec3, material: &Material) -> Vec3 {
+    pub fn specular(&self, mean_normal: Vec3, material: &Material) -> Vec3 {
         if material.specular == Vec3::ZERO {
             return Vec3::ZERO;
         }

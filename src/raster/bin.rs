@@ -4,77 +4,16 @@
 //! and one that fills, into one flat list. A tile reads its part of group after group, which is the triangles' order, so
 //! neither groups nor threads show.
 
-use super::block::SHADED_BLOCK;
-use super::edge::{BLOCK, Edges, Rect};
-use crate::geometry::{Geometry, ScreenTriangle, offset_bounds, sample_offsets};
-use crate::settings::{Region, Settings};
+use super::edge::Edges;
+use super::grid::{TileGrid, bounds};
+use crate::geometry::{Geometry, ScreenTriangle};
 use rayon::prelude::*;
 
 /// Groups a thread: more balance better and cost `4 * num_tiles` bytes each.
 const GROUPS_PER_THREAD: usize = 2;
 
-/// Not one tile alone.
+/// Marks a triangle that touches several tiles.
 const MANY: u32 = u32::MAX;
-
-/// What a part of a frame is widened to: blocks of coverage and of shading lie where they do in the whole frame.
-const ALIGNED: i32 = if SHADED_BLOCK as i32 > BLOCK { SHADED_BLOCK as i32 } else { BLOCK };
-
-/// The tiles of a frame, or of a part of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TileGrid {
-    /// Side of a tile in pixels: that of a block of shading at least.
-    pub tile_size: i32,
-    /// Columns and rows of tiles.
-    pub num_tiles: [i32; 2],
-    /// The pixels that the tiles cover: the region of the settings, widened to whole blocks within the frame.
-    pub area: Rect,
-    /// Least and largest offset of a sample from its pixel's corner in 1/256 pixel.
-    pub offset_bounds: [i32; 2],
-}
-
-impl TileGrid {
-    /// The tiles that cover what `settings` draw.
-    #[must_use]
-    pub fn new(settings: &Settings) -> Self {
-        let Region { x, y, width, height } = settings.drawn();
-        let frame = [settings.width as i32, settings.height as i32];
-        let ends = [x + width, y + height].map(|end| (end as i32 + ALIGNED - 1) & -ALIGNED);
-        let area = Rect { min: [x, y].map(|v| v as i32 & -ALIGNED), max: [0, 1].map(|i| ends[i].min(frame[i])) };
-        // What a block of shading sees of a material is drawn at once.
-        let tile_size = settings.tile_size.max(SHADED_BLOCK as u32) as i32;
-        let num_tiles = area.size().map(|s| (s + tile_size - 1) / tile_size);
-        Self { tile_size, num_tiles, area, offset_bounds: offset_bounds(settings.msaa) }
-    }
-
-    /// The pixels of a tile that lie in the area; tiles count from the left, row by row.
-    #[must_use]
-    pub fn rect(&self, tile: usize) -> Rect {
-        let tile = tile as i32;
-        let place = [tile % self.num_tiles[0], tile / self.num_tiles[0]];
-        let min = [0, 1].map(|i| self.area.min[i] + place[i] * self.tile_size);
-        Rect { min, max: [0, 1].map(|i| (min[i] + self.tile_size).min(self.area.max[i])) }
-    }
-
-    /// How many tiles there are.
-    #[must_use]
-    pub fn num(&self) -> usize {
-        self.num_tiles[0] as usize * self.num_tiles[1] as usize
-    }
-}
-
-/// The pixels within `rect` of which a sample may lie in the triangle's bounding box; empty ones have `max <= min`.
-/// `least` and `most` bound the samples' offsets.
-#[inline]
-pub(super) fn bounds(triangle: &ScreenTriangle, rect: &Rect, [least, most]: [i32; 2]) -> Rect {
-    let [a, b, c] = triangle.corners;
-    let mut bounds = *rect;
-    for i in 0..2 {
-        let (min, max) = (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i]));
-        bounds.min[i] = bounds.min[i].max((min - most + 255) >> 8);
-        bounds.max[i] = bounds.max[i].min(((max - least) >> 8) + 1);
-    }
-    bounds
-}
 
 /// The triangles of a run of chunks by tile.
 #[derive(Clone, Debug, Default)]
@@ -197,48 +136,4 @@ impl Bins {
             triangles.extend_from_slice(&group.triangles[start as usize..end as usize]);
         }
     }
-
-    /// How many entries all tiles hold together.
-    #[must_use]
-    pub fn num_entries(&self) -> usize {
-        self.groups.iter().map(|group| group.triangles.len()).sum()
-    }
-}
-
-/// How often each pixel's samples are covered, without depth: a sum over the samples of each pixel of the grid's area,
-/// cut off at 255. What tests of coverage look at, and what shows overdraw.
-#[must_use]
-pub fn hit_counts(geometry: &Geometry, settings: &Settings) -> Vec<u8> {
-    match settings.msaa {
-        8 => count_hits::<8>(geometry, settings),
-        4 => count_hits::<4>(geometry, settings),
-        _ => count_hits::<1>(geometry, settings),
-    }
-}
-
-fn count_hits<const S: usize>(geometry: &Geometry, settings: &Settings) -> Vec<u8> {
-    let grid = TileGrid::new(settings);
-    let mut bins = Bins::default();
-    bins.fill(geometry, &grid);
-    let [width, height] = grid.area.size().map(|side| side as usize);
-    let mut counts = vec![0_u8; width * height];
-    let mut list = Vec::new();
-    for tile in 0..grid.num() {
-        list.clear();
-        bins.list(tile, &mut list);
-        let rect = grid.rect(tile);
-        for &index in &list {
-            let triangle = geometry.triangle(index);
-            let edges = Edges::<S>::new(&triangle.corners, sample_offsets(settings.msaa));
-            edges.cover(&bounds(triangle, &rect, grid.offset_bounds), &mut |row| {
-                let [x, y] = [row.x - grid.area.min[0], row.y - grid.area.min[1]].map(|v| v as usize);
-                let start = y * width + x;
-                let num = (rect.max[0] - row.x).min(8) as usize;
-                for (count, is_covered) in counts[start..start + num].iter_mut().zip(row.mask.to_array()) {
-                    *count = count.saturating_add((is_covered & 1) as u8);
-                }
-            });
-        }
-    }
-    counts
 }

@@ -3,9 +3,6 @@
 use super::gather::SeenQuad;
 use super::quad::{AttributePlanes, QuadPair};
 
-/// Side of a block in pixels; blocks lie on multiples of it in the frame.
-pub const SHADED_BLOCK: usize = 16;
-
 /// What a block of 16x16 pixels sees of one material: each triangle's quads, row by row of each 8x8 pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadBlock<'a> {
@@ -25,13 +22,11 @@ impl<'a> QuadBlock<'a> {
     }
 
     /// How many pairs there are.
-    #[must_use]
     pub fn num_pairs(&self) -> usize {
         self.quads.len().div_ceil(2)
     }
 
     /// One of [`Self::pairs`].
-    #[must_use]
     #[inline(always)]
     pub fn pair(&self, index: usize) -> QuadPair<'a> {
         let Self { material, tile, planes, quads } = *self;

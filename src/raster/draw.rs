@@ -4,12 +4,13 @@
 //! a [`Scratch`], taken from a pool and given back, so a steady frame allocates nothing for tiles or triangles.
 
 use super::attributes::PlaneMaker;
-use super::bin::{Bins, TileGrid};
-use super::block::{QuadBlock, SHADED_BLOCK};
+use super::bin::Bins;
+use super::block::QuadBlock;
 use super::edge::Rect;
 use super::gather::{SeenQuad, gather};
-use super::quad::{AttributePlanes, QuadPair};
+use super::grid::{SHADED_BLOCK, TileGrid};
 use super::pool::Pool;
+use super::quad::{AttributePlanes, QuadPair};
 use super::scratch::Scratch;
 use super::tile::NONE;
 use crate::frame::{Frame, Pixel};
@@ -99,10 +100,7 @@ impl Rasterizer {
         let tiles = rows
             .par_chunks_mut(grid.tile_size as usize)
             .enumerate()
-            .map_init(
-                || scratches.take(),
-                |scratch, (tile, rows)| painter.paint(tile, rows, scratch, shade),
-            )
+            .map_init(|| scratches.take(), |scratch, (tile, rows)| painter.paint(tile, rows, scratch, shade))
             .reduce(RasterStats::default, RasterStats::add);
         RasterStats { triangles_drawn: geometry.num_triangles() as u64, binning_ms, ..tiles }
     }

@@ -3,7 +3,7 @@
 //! Quads start on even columns and rows of the frame. Those of one quad come in the order of their triangles, so that
 //! a pixel's sum does not depend on the tiling.
 
-use super::block::SHADED_BLOCK;
+use super::grid::SHADED_BLOCK;
 use super::tile::{NONE, VisibilityBuffer};
 use crate::simd::u32x8;
 

@@ -100,7 +100,8 @@ impl<'a> QuadPair<'a> {
     #[inline(always)]
     pub fn covered_bits(&self) -> u8 {
         // A byte is at most 8, so nothing is carried to the next one: its highest bit says whether it is above 0.
-        let is_covered = (u64::from_le_bytes([0x7f; 8]) + u64::from_le_bytes(self.coverage)) & u64::from_le_bytes([0x80; 8]);
+        let is_covered =
+            (u64::from_le_bytes([0x7f; 8]) + u64::from_le_bytes(self.coverage)) & u64::from_le_bytes([0x80; 8]);
         // Bit 8 i + 7 of the product's factor moves to bit 56 + i: one set bit of the other, 49 - 7 i, for each byte.
         (is_covered.wrapping_mul(0x0002_0408_1020_4081) >> 56) as u8
     }

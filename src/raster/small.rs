@@ -1,5 +1,6 @@
 //! Edge functions of small triangles, as [`Edges`](super::edge::Edges) has them, in 32 bits and without blocks.
 
+use super::edge::{BLOCK, Rect, Row};
 use crate::simd::i32x8;
 
 /// Largest side of the bounding box in 1/256 pixel: 16 pixels. Products with places up to a block beyond it stay below 2^26.
@@ -33,9 +34,26 @@ impl SmallEdges {
         }
     }
 
+    /// Calls `sink` for rows of eight pixels within `bounds`, as [`Edges::cover`](super::edge::Edges::cover) does, and for
+    /// some that are not covered at all.
+    #[inline(always)]
+    pub(super) fn cover(&self, offsets: &[[i32; 2]], bounds: &Rect, sink: &mut impl FnMut(Row)) {
+        for (sample, offset) in offsets.iter().enumerate() {
+            for x in (bounds.min[0] & -BLOCK..bounds.max[0]).step_by(BLOCK as usize) {
+                let mut values = self.at([x, bounds.min[1]], *offset);
+                for y in bounds.min[1]..bounds.max[1] {
+                    let [a, b, c] = values;
+                    // Inside, no edge function is negative.
+                    sink(Row { sample, x, y, mask: !((a | b | c) >> 31_u32) });
+                    values.iter_mut().zip(self.step_y).for_each(|(value, step)| *value += step);
+                }
+            }
+        }
+    }
+
     /// The edge functions at a sample of eight pixels from column `x` of row `y`.
     #[inline(always)]
-    pub(super) fn at(&self, [x, y]: [i32; 2], offset: [i32; 2]) -> [i32x8; 3] {
+    fn at(&self, [x, y]: [i32; 2], offset: [i32; 2]) -> [i32x8; 3] {
         let slopes = slopes(&self.corners);
         std::array::from_fn(|i| {
             let ([a, b], p) = (slopes[i], self.corners[i]);
@@ -43,18 +61,6 @@ impl SmallEdges {
             let first = a * (x * 256 + offset[0] - p[0]) + b * (y * 256 + offset[1] - p[1]) - i32::from(!owns_edge);
             self.along[i] + i32x8::splat(first)
         })
-    }
-
-    /// Moves the values on to the next row.
-    #[inline(always)]
-    pub(super) fn step(&self, values: &mut [i32x8; 3]) {
-        values.iter_mut().zip(self.step_y).for_each(|(value, step)| *value += step);
-    }
-
-    /// All bits set where the sample is inside.
-    #[inline(always)]
-    pub(super) fn inside([a, b, c]: &[i32x8; 3]) -> i32x8 {
-        !((*a | *b | *c) >> 31_u32)
     }
 }
 
@@ -69,7 +75,7 @@ fn slopes(corners: &[[i32; 2]; 3]) -> [[i32; 2]; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::edge::{BLOCK, Edges, Rect};
+    use super::super::edge::Edges;
     use super::*;
     use crate::geometry::sample_offsets;
 
@@ -102,18 +108,11 @@ mod tests {
             Edges::<8>::new(&corners, offsets).cover(&rect, &mut |row| {
                 expected.insert((row.sample, row.x, row.y), row.mask.to_array());
             });
-            let small = SmallEdges::new(&corners);
-            for (sample, offset) in offsets.iter().enumerate() {
-                for x in (min[0]..rect.max[0]).step_by(BLOCK as usize) {
-                    let mut values = small.at([x, min[1]], *offset);
-                    for y in min[1]..rect.max[1] {
-                        let found = SmallEdges::inside(&values).to_array();
-                        assert_eq!(found, expected.get(&(sample, x, y)).copied().unwrap_or_default(), "{corners:?}");
-                        num_covered += found.iter().filter(|lane| **lane != 0).count();
-                        small.step(&mut values);
-                    }
-                }
-            }
+            SmallEdges::new(&corners).cover(offsets, &rect, &mut |Row { sample, x, y, mask }| {
+                let found = mask.to_array();
+                assert_eq!(found, expected.get(&(sample, x, y)).copied().unwrap_or_default(), "{corners:?}");
+                num_covered += found.iter().filter(|lane| **lane != 0).count();
+            });
         }
         assert!(num_covered > 100_000, "only {num_covered} samples");
     }

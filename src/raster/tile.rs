@@ -4,11 +4,11 @@
 //! *local index*, its place in the tile's list. Lists are in the triangles' order, so the smaller local index is the
 //! earlier triangle, and it stays where depths are equal. All pieces of a clipped triangle go by the first one's index.
 
-use super::bin::bounds;
-use super::edge::{BLOCK, Edges, Rect, Row};
+use super::edge::{Edges, Rect, Row};
+use super::grid::bounds;
 use super::small::SmallEdges;
 use crate::geometry::{Geometry, ScreenTriangle, offset_bounds, sample_offsets};
-use crate::simd::{f32x8, i32x8, u32x8};
+use crate::simd::{f32x8, i32x8, lane_indices, u32x8};
 
 /// No triangle.
 pub(super) const NONE: u32 = u32::MAX;
@@ -24,7 +24,7 @@ pub(super) struct VisibilityBuffer {
     num_rows: usize,
     inverse_w: Vec<f32x8>,
     triangles: Vec<u32x8>,
-    /// What is farther than this is hidden, as of the last time it was looked for: [`FARTHEST`] while a sample sees nothing.
+    /// Depth of the farthest sample when last scanned; anything behind it is hidden: [`FARTHEST`] while a sample sees nothing.
     hidden: f32,
 }
 
@@ -106,44 +106,16 @@ impl VisibilityBuffer {
     #[inline]
     fn draw_triangle<const S: usize>(&mut self, triangle: &ScreenTriangle, index: u32, rect: &Rect) {
         let offsets = sample_offsets(S as u32);
-        let bounds = bounds(triangle, rect, offset_bounds(S as u32));
-        if SmallEdges::suit(&triangle.corners) {
-            self.draw_small::<S>(triangle, index, &bounds);
-            return;
-        }
-        let edges = Edges::<S>::new(&triangle.corners, offsets);
         let [dx, dy, constant] = triangle.depth;
         let index = u32x8::splat(index);
-        edges.cover(&bounds, &mut |row: Row| {
+        cover::<S>(triangle, &bounds(triangle, rect, offset_bounds(S as u32)), &mut |row: Row| {
             let [offset_x, offset_y] = offsets[row.sample].map(|offset| offset as f32 * (1.0 / 256.0));
-            let x = f32x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + f32x8::splat(row.x as f32 + offset_x);
+            let x = lane_indices() + f32x8::splat(row.x as f32 + offset_x);
             let y = row.y as f32 + offset_y;
             let inverse_w = x * f32x8::splat(dx) + f32x8::splat(y * dy) + f32x8::splat(constant);
             let at = self.at(row.sample, (row.x - self.origin[0]) as usize / 8, (row.y - self.origin[1]) as usize);
             self.test(at, inverse_w, row.mask, index);
         });
-    }
-
-    /// Draws a small triangle: most of a frame's are, and what [`Edges`] prepares would take longer than the rows themselves.
-    #[inline(always)]
-    fn draw_small<const S: usize>(&mut self, triangle: &ScreenTriangle, index: u32, bounds: &Rect) {
-        let edges = SmallEdges::new(&triangle.corners);
-        let [dx, dy, constant] = triangle.depth;
-        let index = u32x8::splat(index);
-        for (sample, offset) in sample_offsets(S as u32).iter().enumerate() {
-            let [offset_x, offset_y] = offset.map(|offset| offset as f32 * (1.0 / 256.0));
-            for x in (bounds.min[0] & -BLOCK..bounds.max[0]).step_by(BLOCK as usize) {
-                let mut values = edges.at([x, bounds.min[1]], *offset);
-                let lanes = f32x8::new([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + f32x8::splat(x as f32 + offset_x);
-                let along_x = lanes * f32x8::splat(dx);
-                for y in bounds.min[1]..bounds.max[1] {
-                    let inverse_w = along_x + f32x8::splat((y as f32 + offset_y) * dy) + f32x8::splat(constant);
-                    let at = self.at(sample, (x - self.origin[0]) as usize / 8, (y - self.origin[1]) as usize);
-                    self.test(at, inverse_w, SmallEdges::inside(&values), index);
-                    edges.step(&mut values);
-                }
-            }
-        }
     }
 
     /// Keeps the nearer of what is stored and what is drawn.
@@ -169,5 +141,17 @@ impl VisibilityBuffer {
     #[inline(always)]
     pub(super) fn triangles(&self, sample: usize, column: usize, row: usize) -> u32x8 {
         self.triangles[self.at(sample, column, row)]
+    }
+}
+
+/// Calls `sink` for the rows of eight pixels within `bounds` of which a sample may be covered. Most triangles are small, and
+/// what [`Edges`] prepares would take longer than their rows themselves.
+#[inline(always)]
+pub(super) fn cover<const S: usize>(triangle: &ScreenTriangle, bounds: &Rect, sink: &mut impl FnMut(Row)) {
+    let offsets = sample_offsets(S as u32);
+    if SmallEdges::suit(&triangle.corners) {
+        SmallEdges::new(&triangle.corners).cover(offsets, bounds, sink);
+    } else {
+        Edges::<S>::new(&triangle.corners, offsets).cover(bounds, sink);
     }
 }

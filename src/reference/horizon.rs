@@ -4,7 +4,8 @@
 //! the line, from the middle of the ellipse, and is seen over `p_i = eta_i - d_i |D|`. The line's part of the kernel is
 //! `exp(-2 r^2)`, `r^2 = r0^2 + C' (eta - eta0)^2`, and the eye sees what makes a new record of `p`.
 
-use super::{Conic, color, exp_negative, height, integral};
+use super::formulas::Conic;
+use super::stored::{color, exp_negative, height, integral};
 use crate::texture::Level;
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! A pixel by many rays, each marched densely.
 
-use super::{color, exp_negative, height};
+use super::stored::{color, exp_negative, height};
 use crate::footprint::Footprint;
 use crate::texture::{Level, Surface};
 

@@ -1,6 +1,7 @@
 //! The texels of an ellipse, those of them that the eye sees, and their mean.
 
-use super::{Conic, color, exp_negative, height};
+use super::formulas::Conic;
+use super::stored::{color, exp_negative, height};
 use crate::texture::Level;
 
 /// How close a ray may pass relief, of its whole depth, for rounding to decide: a kernel adds up the ray's height step by

@@ -5,7 +5,8 @@
 //! opened; in a cell the crossing of the ray with the bilinear patch, a quadratic in t, is solved. So no feature is
 //! stepped over, however thin. Eight rays are traced at once; a lane is a pixel.
 
-use super::{HeightField, MAX_SLOPE, finite};
+use super::displacement::{MAX_SLOPE, finite};
+use super::height_field::HeightField;
 use crate::simd::{PixelLanes, as_unsigned, i32x8, lanes, mask};
 use crate::texture::FULL_F32;
 

@@ -198,7 +198,11 @@ impl<'a> Shader<'a> {
         let Some(lights) = lights else { return color };
         let normal = Vec3::from(texel.normal);
         let specular = lights.specular(normal, ground.material);
-        if self.settings.filter.asks_for_lights() { color + specular } else { color * lights.diffuse(normal) + specular }
+        if self.settings.filter.asks_for_lights() {
+            color + specular
+        } else {
+            color * lights.diffuse(normal) + specular
+        }
     }
 
     /// The lights at a place on the screen, if there is lighting.

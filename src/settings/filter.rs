@@ -228,12 +228,8 @@ impl Filter {
 
     /// How its footprints are made.
     pub fn footprint_rule(&self) -> FootprintRule {
-        let traced = |derivatives, formulas, max_stretch| FootprintRule {
-            derivatives,
-            formulas,
-            max_stretch,
-            is_traced: true,
-        };
+        let traced =
+            |derivatives, formulas, max_stretch| FootprintRule { derivatives, formulas, max_stretch, is_traced: true };
         match *self {
             Self::Nearest | Self::Bilinear | Self::Truth(_) => FootprintRule { is_traced: true, ..FootprintRule::FLAT },
             Self::Trilinear(Trilinear { derivatives, formulas }) => traced(derivatives, formulas, 0.0),
@@ -252,9 +248,7 @@ impl Filter {
             Self::Ewa(Ewa { max_anisotropy, .. })
             | Self::Visible(Visible { max_anisotropy, .. })
             | Self::Horizon(Horizon { max_anisotropy, .. }) => max_anisotropy,
-            Self::Nearest | Self::Bilinear | Self::Trilinear(_) | Self::Parallax(_) | Self::Truth(_) => {
-                MAX_ANISOTROPY
-            }
+            Self::Nearest | Self::Bilinear | Self::Trilinear(_) | Self::Parallax(_) | Self::Truth(_) => MAX_ANISOTROPY,
         }
     }
 

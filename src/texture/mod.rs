@@ -10,12 +10,15 @@ mod pyramid;
 mod resample;
 mod rows;
 mod surface;
+mod wrap;
 
 pub(crate) use color::srgb8_of_four;
 pub use color::{linear_from_srgb, linear_from_srgb8, srgb_from_linear, srgb8_from_linear};
 pub use image::{ColorImage, HeightImage, NormalImage};
-pub(crate) use level::{FULL_F32, unpack_normals};
 pub use level::{FULL, Level, Texel};
+pub(crate) use level::{FULL_F32, unpack_normals};
 pub(crate) use pyramid::box_taps;
-pub(crate) use rows::{APRON, RowStarts, Rows, wrap_index};
-pub use surface::{Surface, SurfaceMaps, Wrap};
+pub(crate) use rows::{APRON, RowStarts, Rows};
+pub use surface::{Surface, SurfaceMaps};
+pub use wrap::Wrap;
+pub(crate) use wrap::wrap_index;

@@ -3,18 +3,13 @@
 //! Each level halves both sides (rounding down, at least 1). A texel is the mean of the area it covers in the level
 //! before, with fractional weights where the size is odd, so any size works and a repeating pattern still repeats.
 
-use super::Wrap;
 use super::level::{FULL, FULL_F32, Level, pack_normal, unpack_normal};
-use super::rows::{PackedTexel, Rows, wrap_index};
+use super::rows::{PackedTexel, Rows};
+use super::wrap::{Wrap, wrap_index};
 use rayon::prelude::*;
 
 /// All levels, the finest first, of a pattern as it is stored: a mirrored one spans two repeats.
-pub(super) fn build(
-    texels: Vec<PackedTexel>,
-    size: [usize; 2],
-    wrap: Wrap,
-    num_planes: usize,
-) -> Vec<Level> {
+pub(super) fn build(texels: Vec<PackedTexel>, size: [usize; 2], wrap: Wrap, num_planes: usize) -> Vec<Level> {
     let mut levels = Vec::new();
     let (mut texels, mut size) = (texels, size);
     loop {

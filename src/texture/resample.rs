@@ -1,6 +1,7 @@
 //! Brings maps of different sizes to one: bilinear between texel centres, the identity where the size is the same.
 
-use super::rows::{PackedTexel, wrap_index};
+use super::rows::PackedTexel;
+use super::wrap::wrap_index;
 use super::{ColorImage, HeightImage, NormalImage, Wrap};
 use rayon::prelude::*;
 

@@ -10,7 +10,7 @@
 //! plane 2 | .... | normal      | ...............|
 //! ```
 
-use super::Wrap;
+use super::wrap::{Wrap, wrap_index};
 use crate::simd::{u32x8, u32x16};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub(crate) const APRON: usize = 32;
 
 /// The texels of one mip level, row by row.
 #[derive(Clone, Debug)]
-pub struct Rows {
+pub(crate) struct Rows {
     /// Texels a row before the pattern wraps.
     width: usize,
     /// Rows before the pattern wraps.
@@ -212,17 +212,5 @@ impl RowStarts<'_> {
             Wrap::Repeat | Wrap::Mirror => start + self.pitch,
         };
         start
-    }
-}
-
-/// The stored index of place `i` of an endless row of period `n`. A mirrored pattern is stored whole, so it repeats.
-#[inline(always)]
-pub(crate) fn wrap_index(wrap: Wrap, i: i32, n: usize) -> usize {
-    let n = n as i32;
-    match wrap {
-        Wrap::Clamp => i.clamp(0, n - 1) as usize,
-        // A power of two, the usual size, needs no division.
-        Wrap::Repeat | Wrap::Mirror if n & (n - 1) == 0 => (i & (n - 1)) as usize,
-        Wrap::Repeat | Wrap::Mirror => i.rem_euclid(n) as usize,
     }
 }

@@ -2,20 +2,9 @@
 
 use super::level::{FULL, Level, pack_normal};
 use super::rows::PackedTexel;
+use super::wrap::Wrap;
 use super::{ColorImage, HeightImage, NormalImage, pyramid, resample};
 use crate::error::{Error, Result};
-
-/// What lies beyond the edge of a texture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Wrap {
-    /// The texture again.
-    #[default]
-    Repeat,
-    /// The texture mirrored, then again.
-    Mirror,
-    /// The texels of the edge.
-    Clamp,
-}
 
 /// What a [`Surface`] is made from. Maps may differ in size; all are brought to the largest width and height.
 #[derive(Clone, Debug)]

@@ -1,8 +1,6 @@
 //! Weighted sums of texels, texels in lanes.
 
-use crate::simd::{
-    LineLanes, halves, high_halves, join, join_words, low_halves, split, sums, u32x16,
-};
+use crate::simd::{LineLanes, halves, high_halves, join, join_words, low_halves, split, sums, u32x16};
 use crate::texture::{Rows, Texel, unpack_normals};
 
 /// Sixteen texels at a time: of a row, or eight of each of two.

@@ -25,11 +25,8 @@ pub fn mean(surface: &Surface, footprint: &Footprint, ewa: &Ewa, with_normal: bo
     // Rows along the longer side: fewer of them.
     let is_turned = ellipse.a > ellipse.c;
     let rows = level.rows(is_turned);
-    let (ellipse, place) = if is_turned {
-        (Ellipse { a: ellipse.c, c: ellipse.a, ..ellipse }, [y, x])
-    } else {
-        (ellipse, [x, y])
-    };
+    let (ellipse, place) =
+        if is_turned { (Ellipse { a: ellipse.c, c: ellipse.a, ..ellipse }, [y, x]) } else { (ellipse, [x, y]) };
     let (mean, num_read) = match (with_normal && level.has_normals(), ewa.cut > 1.0) {
         (false, false) => scan::<false, false>(rows, &ellipse, place, 1.0),
         (false, true) => scan::<false, true>(rows, &ellipse, place, ewa.cut),

@@ -25,10 +25,6 @@ impl FarImage {
         (width + APRON) * height
     }
 
-    pub(super) fn num_bytes(&self) -> usize {
-        self.levels.iter().map(|level| level.words.len() * 4).sum()
-    }
-
     /// An image and its coarser levels from linear colours (0 to 1 of the surface's scale), row by row.
     pub(super) fn new(size: [usize; 2], colors: Vec<[f32; 3]>) -> Self {
         let (mut size, mut colors) = (size, colors);

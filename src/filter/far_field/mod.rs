@@ -13,4 +13,4 @@ mod encode;
 mod sample;
 mod tables;
 
-pub use tables::FarField;
+pub(super) use tables::FarField;

@@ -17,7 +17,7 @@ const HAND_OVER_END: f32 = 4.0 / 3.0;
 
 impl FarField {
     /// How much of the colour of eight pixels the tables give, 0 to 1: all of it where a footprint is large.
-    pub fn shares(&self, prepared: &Prepared, pixels: &Footprints, max_anisotropy: f32) -> PixelLanes {
+    pub(in crate::filter) fn shares(&self, prepared: &Prepared, pixels: &Footprints, max_anisotropy: f32) -> PixelLanes {
         let surface = prepared.surface();
         let texels = surface.levels()[self.first_level].texels_per_repeat();
         let across = Ellipses::new(pixels, texels, max_anisotropy).short.sqrt() * 2.0;
@@ -36,7 +36,7 @@ impl FarField {
     }
 
     /// The mean of what is seen in a footprint around its base place.
-    pub fn mean(&self, surface: &Surface, footprint: &Footprint, max_anisotropy: f32) -> Texel {
+    pub(in crate::filter) fn mean(&self, surface: &Surface, footprint: &Footprint, max_anisotropy: f32) -> Texel {
         let Footprint { base, displacement, .. } = *footprint;
         let (index, ellipse) = for_tables(surface, self.first_level, footprint, max_anisotropy);
         let place = [0, 1].map(|i| base[i] + displacement[i] * self.mean_depth);

@@ -24,7 +24,7 @@ const PROBED_AZIMUTHS: [usize; 2] = [0, 3];
 
 /// Tables of the seen colour of one surface.
 #[derive(Clone, Debug)]
-pub struct FarField {
+pub(in crate::filter) struct FarField {
     /// The mip level of the tables' finest level.
     pub(super) first_level: usize,
     lengths: Lengths,
@@ -39,7 +39,7 @@ pub struct FarField {
 impl FarField {
     /// Builds the tables within so many MiB; `None` for a surface without relief, with edges that do not repeat, or too small
     /// to need tables.
-    pub fn new(surface: &Surface, mib: u32) -> Option<Self> {
+    pub(in crate::filter) fn new(surface: &Surface, mib: u32) -> Option<Self> {
         let num_texels = |level: &usize| surface.levels()[*level].size().iter().product::<usize>();
         let first_level = (0..surface.levels().len()).find(|level| num_texels(level) <= MOST_TEXELS)?;
         if surface.relief_depth() == 0.0 || surface.wrap() == Wrap::Clamp || first_level == 0 {
@@ -54,11 +54,6 @@ impl FarField {
         };
         far.images = far.build(surface);
         Some(far)
-    }
-
-    /// Bytes that the tables take.
-    pub fn num_bytes(&self) -> usize {
-        self.images.iter().map(FarImage::num_bytes).sum()
     }
 
     /// The tables of all directions.

@@ -162,6 +162,6 @@ fn patches<'a>(
     num_bins: f32,
     is_lit: bool,
 ) -> Patches<'a> {
-    let loss = if is_lit || prepared.far_field(horizon.far_field_mib).is_none() || !horizon.far_field { None } else { prepared.level_loss() };
+    let loss = if is_lit { None } else { prepared.level_loss() };
     Patches { surface: prepared.surface(), loss, pixels, horizon, num_bins, is_lit }
 }

@@ -174,11 +174,8 @@ impl<'a> Patches<'a> {
         let PatchScratch { unlit, lit, pixels, totals, .. } = scratch;
         totals.clear();
         totals.resize(picks.len(), Totals::default());
-        let num_rows = if self.is_lit {
-            plan.run(lit, pixels, lights, totals)
-        } else {
-            plan.run(unlit, pixels, &[], totals)
-        };
+        let num_rows =
+            if self.is_lit { plan.run(lit, pixels, lights, totals) } else { plan.run(unlit, pixels, &[], totals) };
         for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
             let mean = totals.mean(self.is_lit).unwrap_or_else(|| {
                 let pixel = self.pixels[usize::from(pick / 8)].lane(usize::from(pick % 8));
@@ -192,12 +189,7 @@ impl<'a> Patches<'a> {
 
     /// The level of a patch, by the geometric mean of the widest and the narrowest footprint; and the means of places and
     /// displacements. `None` where footprints differ too much.
-    fn choose_level(
-        &self,
-        pixels: &[Footprints],
-        picked: &[PixelLanes],
-        num: usize,
-    ) -> Option<(usize, [[f32; 2]; 2])> {
+    fn choose_level(&self, pixels: &[Footprints], picked: &[PixelLanes], num: usize) -> Option<(usize, [[f32; 2]; 2])> {
         let base = self.surface.base();
         let means = means(pixels, picked, num);
         let [du, dv] = base.in_texels(means[1]);
