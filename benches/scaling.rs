@@ -4,7 +4,7 @@
 
 mod scenes;
 
-use basrelief::{Filter, Frame, Renderer, Scene, Settings};
+use basrelief::{Filter, Frame, Horizon, Renderer, Scene, Settings, Trilinear};
 use rayon::ThreadPoolBuilder;
 use scenes::{floor, objects, stones, terrain, textured};
 use std::time::Instant;
@@ -19,6 +19,16 @@ fn is_bench() -> bool {
     std::env::args().any(|argument| argument == "--bench")
 }
 
+fn trilinear() -> Filter {
+    Filter::Trilinear(Trilinear::default())
+}
+
+/// The horizon without tables: they are made for small maps only, and would spare a small map its
+/// sweeps.
+fn sweeps() -> Filter {
+    Filter::Horizon(Horizon { far_field: false, ..Horizon::default() })
+}
+
 fn settings(filter: Filter) -> Settings {
     Settings { filter, msaa: 1, ..Settings::default() }
 }
@@ -30,7 +40,7 @@ fn time(scene: Scene, settings: Settings, num_threads: usize) -> f64 {
     let mut pixels: Frame = Frame::default();
     let frame = || {
         let start = Instant::now();
-        pool.install(|| renderer.render_into(&mut pixels, &|| 0.0));
+        pool.install(|| renderer.render_into(&mut pixels));
         start.elapsed().as_secs_f64() * 1e3
     };
     std::iter::repeat_with(frame).take(num_frames()).fold(f64::INFINITY, f64::min)
@@ -46,7 +56,7 @@ fn threads() {
     let hills = textured(terrain(707), stones(1024, 1, 0.0), 4.0);
     let road = textured(floor(), stones(1024, 1, 0.05), 1.0);
     for (name, scene, filter) in
-        [("threads/1m_triangles", hills, Filter::Trilinear), ("threads/floor", road, Filter::Horizon)]
+        [("threads/1m_triangles", hills, trilinear()), ("threads/floor", road, Filter::default())]
     {
         report(name, wanted, [1, 2].map(|num| time(scene.clone(), settings(filter), num)));
     }
@@ -55,7 +65,7 @@ fn threads() {
 /// Four times the pixels.
 fn pixels() {
     let road = textured(floor(), stones(1024, 1, 0.05), 1.0);
-    for (name, filter) in [("pixels/trilinear", Filter::Trilinear), ("pixels/horizon", Filter::Horizon)] {
+    for (name, filter) in [("pixels/trilinear", trilinear()), ("pixels/horizon", Filter::default())] {
         let times = [(960, 540), (1920, 1080)]
             .map(|(width, height)| time(road.clone(), Settings { width, height, ..settings(filter) }, 1));
         report(name, "at most 4.2", times);
@@ -65,18 +75,15 @@ fn pixels() {
 /// Ten times the triangles.
 fn triangles() {
     let times =
-        [224, 707].map(|side| time(textured(terrain(side), stones(1024, 1, 0.0), 4.0), settings(Filter::Trilinear), 1));
+        [224, 707].map(|side| time(textured(terrain(side), stones(1024, 1, 0.0), 4.0), settings(trilinear()), 1));
     report("triangles/trilinear", "at most 10", times);
 }
 
 /// Sixty-four times the texels, with footprints of as many texels.
 fn texels() {
     let scene = |size: u32, depth: f32| textured(floor(), stones(size, 1, depth), 1024.0 / size as f32);
-    for (name, filter, depth) in
-        [("texels/trilinear", Filter::Trilinear, 0.0), ("texels/horizon", Filter::Horizon, 0.05)]
-    {
-        // Tables are made for small maps only, and would spare the small map its sweeps.
-        let settings = Settings { far_field: false, ..settings(filter) };
+    for (name, filter, depth) in [("texels/trilinear", trilinear(), 0.0), ("texels/horizon", sweeps(), 0.05)] {
+        let settings = settings(filter);
         report(
             name,
             "at most 1.3",
@@ -88,8 +95,8 @@ fn texels() {
 /// 2025 objects with a material each and 64 surfaces beside one object with one.
 fn many_objects() {
     let surfaces: Vec<_> = (0..64).map(|seed| stones(256, seed, 0.05)).collect();
-    for (name, filter) in [("objects/trilinear", Filter::Trilinear), ("objects/horizon", Filter::Horizon)] {
-        let settings = Settings { far_field: false, ..settings(filter) };
+    for (name, filter) in [("objects/trilinear", trilinear()), ("objects/horizon", sweeps())] {
+        let settings = settings(filter);
         let one = time(objects(224, 1, &surfaces[..1]), settings.clone(), 1);
         report(name, "-", [one, time(objects(224, 45, &surfaces), settings, 1)]);
     }

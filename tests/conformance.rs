@@ -3,14 +3,14 @@
 
 mod common;
 
-use basrelief::filter::isotropic::{longest_side, trilinear};
-use basrelief::filter::level_within_budget;
+use basrelief::filter::points;
+use basrelief::footprint::{Footprint, Footprints, levels};
 use basrelief::geometry::project;
-use basrelief::invariants::{Pixel, filtered};
+use basrelief::invariants::filtered;
 use basrelief::raster::hit_counts;
 use basrelief::texture::{ColorImage, FULL, Surface, SurfaceMaps, Wrap};
-use basrelief::{Camera, Filter, Material, Mesh, Scene, Settings, render};
-use common::{Random, flat_surface};
+use basrelief::{Camera, Ewa, Filter, Formulas, Horizon, Material, Mesh, Scene, Settings, render};
+use common::{Random, flat_surface, limited_filters, with_budget, with_limit};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -101,7 +101,7 @@ fn anisotropic_frames_are_close_to_isotropic_ones_and_differ() {
     let grid = ColorImage::from_fn(128, 128, |x, y| [if (cell(x) + cell(y)) % 2 == 0 { 0.0 } else { 1.0 }; 3]);
     let maps = SurfaceMaps { albedo: Some(grid), wrap: Wrap::Clamp, ..Default::default() };
     let surface = Arc::new(Surface::new(maps).expect("valid maps"));
-    for filter in [Filter::Ewa, Filter::Visible, Filter::Horizon] {
+    for filter in limited_filters() {
         for texel_budget in [0, 64] {
             let draw = |max_anisotropy: f32| {
                 let corners = [[-3.5, -1.0, 3.5], [3.5, -1.0, 1.0], [3.5, 1.0, 1.0], [-3.5, 1.0, 3.5]];
@@ -113,7 +113,8 @@ fn anisotropic_frames_are_close_to_isotropic_ones_and_differ() {
                     camera: clip_camera(),
                     ..Scene::default()
                 };
-                render(scene, Settings { filter, texel_budget, max_anisotropy, ..square(128) }).expect("a frame").pixels
+                let filter = with_limit(with_budget(filter, texel_budget), max_anisotropy);
+                render(scene, Settings { filter, ..square(128) }).expect("a frame").pixels
             };
             let isotropic = draw(1.0);
             for limit in [2.0, 4.0, 8.0, 16.0] {
@@ -137,9 +138,10 @@ fn higher_limits_take_finer_levels() {
     let surface = flat_surface(256, 256, Wrap::Repeat, 1);
     let level = |aspect: f32, max_anisotropy: f32| {
         let across = 2.0 / 256.0;
-        let pixel = Pixel::new([0.4, 0.3], [across, 0.0], [0.0, across * aspect], [0.0; 2]);
-        let settings = Settings { filter: Filter::Ewa, texel_budget: 64, max_anisotropy, ..Settings::default() };
-        level_within_budget(&surface, &pixel.footprint, &settings).0
+        let pixel = Footprint::new([0.4, 0.3], [across, 0.0], [0.0, across * aspect], [0.0; 2]);
+        let formulas = Formulas::Meant;
+        let rule = levels::EllipseRule { formulas, texel_budget: 64, max_anisotropy };
+        levels::within_budget(&surface, &pixel, &rule).0
     };
     for aspect in [4.0, 8.0, 16.0] {
         let levels = [1.0, 2.0, 4.0, 8.0, 16.0, 1024.0].map(|limit| level(aspect, limit));
@@ -157,13 +159,12 @@ fn footprints_are_long_where_the_derivative_is() {
         let maps = SurfaceMaps { albedo: Some(ColorImage::from_fn(64, 64, color)), ..Default::default() };
         Surface::new(maps).expect("valid maps")
     };
-    let settings = |filter| Settings { filter, ..Settings::default() };
-    for filter in [Filter::Ewa, Filter::Visible, Filter::Horizon] {
+    for filter in limited_filters() {
         // Half a texel by 32 texels, in the middle of a stripe.
         let (short, long) = (0.5 / 64.0, 32.0 / 64.0);
-        let along_u = Pixel::new([0.5, 4.0 / 64.0], [long, 0.0], [0.0, short], [0.0; 2]);
-        let along_v = Pixel::new([4.0 / 64.0, 0.5], [short, 0.0], [0.0, long], [0.0; 2]);
-        let color = |surface: &Surface, pixel: &Pixel| filtered(surface, pixel, &settings(filter))[0];
+        let along_u = Footprint::new([0.5, 4.0 / 64.0], [long, 0.0], [0.0, short], [0.0; 2]);
+        let along_v = Footprint::new([4.0 / 64.0, 0.5], [short, 0.0], [0.0, long], [0.0; 2]);
+        let color = |surface: &Surface, pixel: &Footprint| filtered(surface, pixel, &filter)[0];
         for (kept, blurred) in [
             (color(&stripes(true), &along_u), color(&stripes(false), &along_u)),
             (color(&stripes(false), &along_v), color(&stripes(true), &along_v)),
@@ -177,12 +178,13 @@ fn footprints_are_long_where_the_derivative_is() {
 
 /// The bilinear colour in f64 at a place in repeats.
 fn bilinear(surface: &Surface, level: usize, place: [f32; 2]) -> [f64; 3] {
-    let texels = surface.texels_per_repeat(level);
+    let level = &surface.levels()[level];
+    let texels = level.texels_per_repeat();
     let [u, v] = [0, 1].map(|i| f64::from(place[i]) * f64::from(texels[i]) - 0.5);
     // A pixel without extent reads one texel when it stands on its centre.
     let texel = |x: f64, y: f64| {
         let center = [0, 1].map(|i| ([x, y][i] as f32 + 0.5) / texels[i]);
-        basrelief::filter::isotropic::bilinear(surface, level, center).color.map(f64::from)
+        points::bilinear(level, center).color.map(f64::from)
     };
     let ([x, y], [fx, fy]) = ([u.floor(), v.floor()], [u - u.floor(), v - v.floor()]);
     let row = |y: f64| {
@@ -202,7 +204,7 @@ fn explicit_levels_and_derivatives() {
         let level = size.max(1.0).log2().floor();
         let blend = f64::from(size.max(1.0) / level.exp2() - 1.0);
         let (fine, coarse) = (bilinear(&surface, level as usize, place), bilinear(&surface, level as usize + 1, place));
-        let found = trilinear(&surface, place, size).color;
+        let found = points::trilinear(&surface, place, size).color;
         for i in 0..3 {
             let expected = fine[i] + (coarse[i] - fine[i]) * blend;
             let error = (f64::from(found[i]) - expected).abs() / f64::from(FULL);
@@ -215,8 +217,8 @@ fn explicit_levels_and_derivatives() {
             check(place, lod.exp2(), &format!("level {lod}"));
         }
         for [dx, dy] in [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0], [2.0, 2.0_f32]] {
-            let pixel = Pixel::new(place, [dx / 16.0, 0.0], [0.0, dy / 16.0], [0.0; 2]);
-            let size = longest_side(&surface, &pixel.footprint);
+            let pixel = Footprint::new(place, [dx / 16.0, 0.0], [0.0, dy / 16.0], [0.0; 2]);
+            let size = levels::longest_sides(surface.base(), &Footprints::splat(&pixel)).as_array()[0];
             assert_eq!(size, dx.max(dy));
             check(place, size, &format!("derivatives {dx}, {dy}"));
         }
@@ -235,14 +237,15 @@ fn skinny_and_fat_textures_look_like_square_ones() {
     };
     let (plain, skinny, fat) = (surface([1, 1]), surface([4, 1]), surface([1, 4]));
     let mut random = Random(4);
-    for (filter, most) in [(Filter::Ewa, 0.06), (Filter::Horizon, 0.06)] {
-        let settings = Settings { filter, texel_budget: 0, lines: 64, ..Settings::default() };
+    let ewa = Filter::Ewa(Ewa { texel_budget: 0, ..Ewa::default() });
+    let horizon = Filter::Horizon(Horizon { lines: 64, ..Horizon::default() });
+    for (filter, most) in [(ewa, 0.06), (horizon, 0.06)] {
         let mut worst = 0.0_f32;
         for _ in 0..200 {
             let center = [0; 2].map(|_| random.within(0.0, 1.0));
             let [dx, dy] = [random.within(0.3, 0.6), random.within(0.3, 0.6)];
-            let pixel = Pixel::new(center, [dx, 0.0], [0.0, dy], [0.0; 2]);
-            let [a, b, c] = [&plain, &skinny, &fat].map(|surface| filtered(surface, &pixel, &settings));
+            let pixel = Footprint::new(center, [dx, 0.0], [0.0, dy], [0.0; 2]);
+            let [a, b, c] = [&plain, &skinny, &fat].map(|surface| filtered(surface, &pixel, &filter));
             let errors = [b, c].iter().flat_map(|other| (0..3).map(|i| (a[i] - other[i]).abs())).collect::<Vec<_>>();
             worst = errors.into_iter().fold(worst, f32::max);
         }

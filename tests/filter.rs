@@ -2,14 +2,15 @@
 
 mod common;
 
-use basrelief::filter::visible::{Occlusion, remove_hidden};
-use basrelief::filter::{Ellipse, TexelSet, ewa, horizon, isotropic, trilinear};
-use basrelief::invariants::{self, Checked, Pixel};
+use basrelief::filter::visible::{Occlusion, TexelSet, average, remove_hidden};
+use basrelief::filter::{Batch, Filtered, Footprint, Footprints, Prepared, Scratch, ewa, points, trilinear};
+use basrelief::footprint::Ellipse;
+use basrelief::invariants::{self, Checked};
 use basrelief::reference::{Conic, Lines, RAY_TIE, mean, ray_margin, supersampled, texels};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::{ColorImage, FULL, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Filter, Formulas, Settings, Visibility};
-use common::{Random, cobbles};
+use basrelief::{Ewa, Filter, Formulas, Horizon, Visibility, Visible};
+use common::{Random, cobbles, limited_filters, with_budget, with_limit};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -71,31 +72,55 @@ fn any_number() -> impl Strategy<Value = f32> {
     prop_oneof![3 => -1.0_f32..1.0, 1 => -1e-4_f32..1e-4, 1 => prop::sample::select(strange), 1 => any::<f32>()]
 }
 
-fn any_pixel() -> impl Strategy<Value = Pixel> {
+fn any_pixel() -> impl Strategy<Value = Footprint> {
     let pair = || prop::array::uniform2(any_number());
-    (pair(), pair(), pair(), pair()).prop_map(|(center, dx, dy, view)| Pixel::new(center, dx, dy, view))
+    (pair(), pair(), pair(), pair()).prop_map(|(base, dx, dy, view)| Footprint::new(base, dx, dy, view).bounded())
 }
 
 /// A pixel with derivatives up to `reach` and a displacement up to `walk` repeats, at a 1024th of a repeat.
-fn pixel(reach: f32, walk: f32) -> impl Strategy<Value = Pixel> {
+fn pixel(reach: f32, walk: f32) -> impl Strategy<Value = Footprint> {
     let pair = |most: f32| prop::array::uniform2(-most..most);
-    (pair(1.0), pair(reach), pair(reach), pair(walk))
-        .prop_map(|(center, dx, dy, view)| Pixel::new(center.map(|c| (c * 1024.0).round() / 1024.0), dx, dy, view))
+    (pair(1.0), pair(reach), pair(reach), pair(walk)).prop_map(|(base, dx, dy, view)| {
+        Footprint::new(base.map(|c| (c * 1024.0).round() / 1024.0), dx, dy, view).bounded()
+    })
 }
 
-const ALL: [Filter; 6] =
-    [Filter::Nearest, Filter::Bilinear, Filter::Trilinear, Filter::Ewa, Filter::Visible, Filter::Horizon];
+/// Any filter, near by.
+fn any_filter() -> impl Strategy<Value = Filter> {
+    prop::sample::select(Filter::ALL.to_vec()).prop_map(|filter| with_lines(filter, 16))
+}
 
-/// The filters that can be kept on the base level.
-const BASE_LEVEL: [Filter; 5] = [Filter::Nearest, Filter::Bilinear, Filter::Ewa, Filter::Visible, Filter::Horizon];
+/// The filters that can be kept on the base level, there.
+fn any_on_base_level() -> impl Strategy<Value = Filter> {
+    let mut filters = Filter::ALL.to_vec();
+    filters.retain(|filter| !matches!(filter, Filter::Trilinear(_) | Filter::Parallax(_)));
+    prop::sample::select(filters).prop_map(base_level)
+}
 
-fn settings(filter: Filter) -> Settings {
-    Settings { filter, texel_budget: 256, lines: 16, far_field: false, ..Settings::default() }
+/// The filters to which the edges between texels do not matter, at base level where they can be
+/// kept there.
+fn any_smooth() -> impl Strategy<Value = Filter> {
+    let mut filters = Filter::ALL.to_vec();
+    filters.retain(|filter| *filter != Filter::Nearest);
+    prop::sample::select(filters).prop_map(base_level)
+}
+
+/// The filter with other lines, where it has any.
+fn with_lines(filter: Filter, lines: u32) -> Filter {
+    match filter {
+        Filter::Horizon(_) => Filter::Horizon(horizon(lines)),
+        other => other,
+    }
+}
+
+/// The horizon near by.
+fn horizon(lines: u32) -> Horizon {
+    Horizon { lines, far_field: false, ..Horizon::default() }
 }
 
 /// Base level wherever a footprint is within the caps.
-fn base_level(filter: Filter) -> Settings {
-    Settings { texel_budget: 0, lines: 64, ..settings(filter) }
+fn base_level(filter: Filter) -> Filter {
+    with_lines(with_budget(filter, 0), 64)
 }
 
 proptest! {
@@ -107,25 +132,25 @@ proptest! {
     }
 
     #[test]
-    fn colours_lie_within_the_texels(made in any_maps(), pixel in any_pixel(), filter in prop::sample::select(ALL.to_vec())) {
-        broke(invariants::within_texels(&made.surface(), &pixel, &settings(filter)))?;
+    fn colours_lie_within_the_texels(made in any_maps(), pixel in any_pixel(), filter in any_filter()) {
+        broke(invariants::within_texels(&made.surface(), &pixel, &filter))?;
     }
 
     #[test]
-    fn constant_textures_give_their_constant(seed in any::<u64>(), color in any::<[u16; 3]>(), pixel in any_pixel(), filter in prop::sample::select(ALL.to_vec())) {
+    fn constant_textures_give_their_constant(seed in any::<u64>(), color in any::<[u16; 3]>(), pixel in any_pixel(), filter in any_filter()) {
         let mut maps = maps(8, 8, Wrap::Repeat, seed);
         maps.albedo = Some(ColorImage { width: 1, height: 1, texels: vec![color], scale: 1.0 });
-        broke(invariants::within_texels(&surface(maps), &pixel, &settings(filter)))?;
+        broke(invariants::within_texels(&surface(maps), &pixel, &filter))?;
     }
 
     #[test]
     fn sets_of_texels_are_the_papers(made in any_maps(), pixel in pixel(0.5, 2.0)) {
-        broke(invariants::visible_sets(&made.surface(), &pixel, &settings(Filter::Visible)))?;
+        broke(invariants::visible_sets(&made.surface(), &pixel, &Visible::default()))?;
     }
 
     #[test]
     fn sets_of_texels_are_the_papers_for_any_numbers(made in any_maps(), pixel in any_pixel()) {
-        broke(invariants::visible_sets(&made.surface(), &pixel, &settings(Filter::Visible)))?;
+        broke(invariants::visible_sets(&made.surface(), &pixel, &Visible::default()))?;
     }
 
     #[test]
@@ -135,60 +160,64 @@ proptest! {
 
     #[test]
     fn records_are_what_rays_leave_visible(made in any_maps(), pixel in pixel(0.3, 1.0)) {
-        broke(invariants::records_are_visible(&made.surface(), &pixel, &settings(Filter::Horizon)))?;
+        broke(invariants::records_are_visible(&made.surface(), &pixel, Horizon::default().max_anisotropy))?;
     }
 
     #[test]
-    fn anisotropy_limits_above_the_footprints_change_nothing(made in any_maps(), pixel in pixel(0.5, 1.0), filter in prop::sample::select(ALL.to_vec())) {
-        let settings = Settings { max_anisotropy: 16.0, ..settings(filter) };
-        broke(invariants::anisotropy_limit_only_limits(&made.surface(), &pixel, &settings))?;
+    fn anisotropy_limits_above_the_footprints_change_nothing(made in any_maps(), pixel in pixel(0.5, 1.0), filter in any_filter()) {
+        let limited = |limit| with_limit(filter, limit);
+        broke(invariants::anisotropy_limit_only_limits(&made.surface(), &pixel, 16.0, limited))?;
     }
 
     #[test]
-    fn shifting_by_texels_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), by in prop::array::uniform2(0_u32..16), filter in prop::sample::select(BASE_LEVEL.to_vec())) {
-        broke(invariants::shifted(&even_maps(seed), &pixel, &base_level(filter), by, tolerance(filter)))?;
+    fn shifting_by_texels_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), by in prop::array::uniform2(0_u32..16), filter in any_on_base_level()) {
+        broke(invariants::shifted(&even_maps(seed), &pixel, &filter, by, tolerance(&filter)))?;
     }
 
     #[test]
-    fn turning_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), filter in prop::sample::select(ALL[1..].to_vec())) {
-        broke(invariants::turned(&even_maps(seed), &pixel, &base_level(filter), tolerance(filter)))?;
+    fn turning_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), filter in any_smooth()) {
+        broke(invariants::turned(&even_maps(seed), &pixel, &filter, tolerance(&filter)))?;
     }
 
     #[test]
-    fn mirroring_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), filter in prop::sample::select(ALL[1..].to_vec())) {
-        broke(invariants::mirrored(&even_maps(seed), &pixel, &base_level(filter), tolerance(filter)))?;
+    fn mirroring_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6), filter in any_smooth()) {
+        broke(invariants::mirrored(&even_maps(seed), &pixel, &filter, tolerance(&filter)))?;
     }
 
     #[test]
-    fn the_same_ellipse_gives_the_same_colour(made in any_maps(), pixel in any_pixel(), filter in prop::sample::select(ALL.to_vec())) {
-        broke(invariants::same_for_same_ellipse(&made.surface(), &pixel, &settings(filter)))?;
+    fn the_same_ellipse_gives_the_same_colour(made in any_maps(), pixel in any_pixel(), filter in any_filter()) {
+        broke(invariants::same_for_same_ellipse(&made.surface(), &pixel, &filter))?;
     }
 
     #[test]
-    fn colours_are_linear_in_the_texture(made in any_maps(), pixel in any_pixel(), filter in prop::sample::select(ALL.to_vec())) {
+    fn colours_are_linear_in_the_texture(made in any_maps(), pixel in any_pixel(), filter in any_filter()) {
         let other = maps(made.0, made.1, made.2, !made.3).albedo.expect("an albedo");
-        broke(invariants::linear_in_texture(&made.maps(), &other, &pixel, &settings(filter)))?;
+        broke(invariants::linear_in_texture(&made.maps(), &other, &pixel, &filter))?;
     }
 
     #[test]
     fn flat_relief_hides_no_texel(made in any_maps(), height in any::<u16>(), pixel in any_pixel()) {
-        broke(invariants::flat_relief_hides_nothing(&made.maps(), height, &pixel, &settings(Filter::Visible)))?;
+        broke(invariants::flat_relief_hides_nothing(&made.maps(), height, &pixel, &Visible::default()))?;
     }
 
     #[test]
     fn no_pixel_takes_more_texels_than_its_budget(made in any_maps(), pixel in any_pixel(), texel_budget in 0_u32..400) {
-        broke(invariants::work_is_bounded(&made.surface(), &pixel, &Settings { texel_budget, ..settings(Filter::Visible) }))?;
+        let visible = Visible { texel_budget, ..Visible::default() };
+        let ewa = Ewa { texel_budget, ..Ewa::default() };
+        broke(invariants::work_is_bounded(&made.surface(), &pixel, &visible, &ewa))?;
     }
 
     #[test]
     fn scaling_height_and_view_changes_nothing(seed in any::<u64>(), pixel in pixel(0.5, 0.6)) {
-        broke(invariants::same_when_scaled(&even_maps(seed), &pixel, &base_level(Filter::Horizon), tolerance(Filter::Horizon)))?;
+        let horizon = horizon(64);
+        let tolerance = tolerance(&Filter::Horizon(horizon));
+        broke(invariants::same_when_scaled(&even_maps(seed), &pixel, &horizon, tolerance))?;
     }
 }
 
 /// Sums in another order; for the sweep also places between texels that round differently.
-fn tolerance(filter: Filter) -> f32 {
-    if filter == Filter::Horizon { 1e-3 } else { 2e-5 }
+fn tolerance(filter: &Filter) -> f32 {
+    if matches!(filter, Filter::Horizon(_)) { 1e-3 } else { 2e-5 }
 }
 
 proptest! {
@@ -196,7 +225,7 @@ proptest! {
 
     #[test]
     fn horizon_weights_are_a_partition(seed in any::<u64>(), wrap in prop::sample::select(vec![Wrap::Repeat, Wrap::Mirror, Wrap::Clamp]), pixel in any_pixel()) {
-        broke(invariants::horizon_weights(&maps(3, 2, wrap, seed), &pixel, &settings(Filter::Horizon)))?;
+        broke(invariants::horizon_weights(&maps(3, 2, wrap, seed), &pixel, &horizon(16)))?;
     }
 }
 
@@ -208,7 +237,7 @@ fn marches_along_the_edges_of_cells_find_the_first_hit() {
     for (place, view) in
         [([-13.625, -13.625], [-13.625, 0.0]), ([-13.5 / 11.0, 0.3], [0.0, 3.7]), ([-13.5 / 11.0, 0.3], [-1e-5, 3.7])]
     {
-        let pixel = Pixel::new(place, [0.1, 0.0], [0.0, 0.1], view);
+        let pixel = Footprint::new(place, [0.1, 0.0], [0.0, 0.1], view);
         invariants::march_finds_first_hit(&surface, &pixel).expect("the first hit");
     }
 }
@@ -217,11 +246,14 @@ fn marches_along_the_edges_of_cells_find_the_first_hit() {
 #[test]
 fn a_sweep_takes_a_bounded_number_of_rows() {
     let surface = surface(maps(1, 1, Wrap::Repeat, 1));
-    let settings = Settings { max_anisotropy: 1e6, ..settings(Filter::Horizon) };
+    let prepared = Prepared::new(surface).without_far_field();
+    let filter = Filter::Horizon(Horizon { max_anisotropy: 1e6, ..horizon(16) });
     for view in [0.0, 0.002, 3.0, 64.0] {
-        let pixel = Pixel::new([0.9, 0.0], [0.0, 0.002], [-15.75, -15.75], [view; 2]);
-        let (_, num_rows) = horizon::visible_mean(&surface, &pixel.footprint, pixel.displacement, &settings, None);
-        assert!(num_rows < 8 * 200, "{num_rows} rows");
+        let pixel = Footprint::new([0.9, 0.0], [0.0, 0.002], [-15.75, -15.75], [view; 2]);
+        let batch = Batch { pixels: &[Footprints::splat(&pixel)], lights: &[], is_fine: true };
+        let mut found = [Filtered::default()];
+        let num_rows = filter.colors(&prepared, &batch, &mut Scratch::default(), &mut found).num_tested;
+        assert!((1..8 * 200).contains(&num_rows), "{num_rows} rows");
     }
 }
 
@@ -239,12 +271,12 @@ struct Case {
 }
 
 impl Case {
-    fn new(maps: SurfaceMaps, pixel: &Pixel) -> Self {
+    fn new(maps: SurfaceMaps, pixel: &Footprint) -> Self {
         let surface = surface(maps);
-        let texels = surface.texels_per_repeat(0);
-        let ellipse = Ellipse::new(&pixel.footprint, texels, Formulas::Meant).widened(64.0, Formulas::Meant);
+        let texels = surface.base().texels_per_repeat();
+        let ellipse = Ellipse::new(pixel, texels, Formulas::Meant).widened(64.0, Formulas::Meant);
         let scaled = |p: [f32; 2]| [p[0] * texels[0], p[1] * texels[1]];
-        Self { center: scaled(pixel.footprint.center), displacement: scaled(pixel.displacement), surface, ellipse }
+        Self { center: scaled(pixel.base), displacement: scaled(pixel.displacement), surface, ellipse }
     }
 
     fn conic(&self) -> Conic {
@@ -277,7 +309,7 @@ proptest! {
     #[test]
     fn visible_texels_are_the_references(made in any_maps(), pixel in pixel(0.3, 2.0)) {
         let case = Case::new(made.maps(), &pixel);
-        let level = &case.surface.levels[0];
+        let level = case.surface.base();
         let mut set = TexelSet::default();
         set.fill_ellipse(&case.ellipse, case.center);
         let all: Vec<_> = set.iter().collect();
@@ -292,11 +324,11 @@ proptest! {
     #[test]
     fn ewa_mean_is_the_references(made in any_maps(), pixel in pixel(0.3, 2.0)) {
         let case = Case::new(made.maps(), &pixel);
-        let level = &case.surface.levels[0];
+        let level = case.surface.base();
         let mut set = TexelSet::default();
         set.fill_ellipse(&case.ellipse, case.center);
         remove_hidden(&mut set, &Occlusion::new(level, case.displacement), Visibility::Exact);
-        let found = ewa::average(level, &set, &case.ellipse, case.center).map(|mean| mean.color.map(unit));
+        let found = average(level, &set, &case.ellipse, case.center).map(|mean| mean.color.map(unit));
         let expected = mean(level, &set.iter().collect::<Vec<_>>(), &case.conic(), case.center());
         prop_assert_eq!(found.is_some(), expected.is_some());
         if let (Some(found), Some(expected)) = (found, expected) {
@@ -318,8 +350,8 @@ proptest! {
         // A texel on the edge may belong to one of the two.
         if texels.iter().all(|(_, r2)| (r2 - 1.0).abs() > tie) {
             let inside: Vec<_> = texels.iter().filter(|(_, r2)| *r2 <= 1.0).map(|(texel, _)| *texel).collect();
-            let found = ewa::mean(&case.surface, &pixel.footprint, &base_level(Filter::Ewa), true).0.color.map(unit);
-            if let Some(expected) = mean(&case.surface.levels[0], &inside, &conic, center) {
+            let found = ewa::mean(&case.surface, &pixel, &Ewa { texel_budget: 0, ..Ewa::default() }, true).0.color.map(unit);
+            if let Some(expected) = mean(case.surface.base(), &inside, &conic, center) {
                 let error = (0..3).map(|i| (f64::from(found[i]) - expected[i]).abs()).fold(0.0, f64::max);
                 // The fitted Gaussian is off by 2e-5, at most 2e-4 of the least weight.
                 let bound = 3e-4 + f64::from(1e-6 * long / short);
@@ -344,9 +376,9 @@ proptest! {
         let size = |lane: usize| if is_near { 1.0 + sizes[0] + 0.02 * sizes[lane] } else { sizes[lane] };
         let mut found = vec![];
         let group = [lanes(0), lanes(1), PixelLanes::new(std::array::from_fn(size))];
-        trilinear::colors(&surface, &[group; 2], |_, color| found.push(color));
+        trilinear::look_up(&surface, &[group; 2], |_, color| found.push(color));
         for lane in 0..8 {
-            let expected = isotropic::trilinear(&surface, place(lane), size(lane)).color;
+            let expected = points::trilinear(&surface, place(lane), size(lane)).color;
             prop_assert_eq!(found[1].map(|lanes| lanes.as_array()[lane]), expected, "{} {:?}", lane, place(lane));
         }
     }
@@ -354,10 +386,10 @@ proptest! {
     #[test]
     fn horizon_mean_is_the_references(made in any_maps(), pixel in pixel(0.5, 1.0)) {
         let surface = made.surface();
-        let found = horizon::visible_mean(&surface, &pixel.footprint, pixel.displacement, &base_level(Filter::Horizon), None).0;
+        let found = invariants::filtered(&surface, &pixel, &Filter::Horizon(horizon(64)));
         let expected = reference_lines(&surface, &pixel).mean();
-        let error = (0..3).map(|i| (f64::from(unit(found.color[i])) - expected[i]).abs()).fold(0.0, f64::max);
-        prop_assert!(error < HORIZON_ERROR, "{:?} {expected:?} {error}", found.color);
+        let error = (0..3).map(|i| (f64::from(found[i]) - expected[i]).abs()).fold(0.0, f64::max);
+        prop_assert!(error < HORIZON_ERROR, "{found:?} {expected:?} {error}");
     }
 }
 
@@ -365,21 +397,21 @@ proptest! {
 /// steep relief by as much.
 const HORIZON_ERROR: f64 = 2e-3;
 
-/// The lines that the sweep takes.
-fn reference_lines<'a>(surface: &'a Surface, pixel: &Pixel) -> Lines<'a> {
-    let texels = surface.texels_per_repeat(0);
-    let ellipse = Ellipse::new(&pixel.footprint, texels, Formulas::Meant).bounded(64.0);
+/// The 64 lines that the sweep takes.
+fn reference_lines<'a>(surface: &'a Surface, pixel: &Footprint) -> Lines<'a> {
+    let texels = surface.base().texels_per_repeat();
+    let ellipse = Ellipse::new(pixel, texels, Formulas::Meant).bounded(64.0);
     let scaled = |p: [f32; 2]| [p[0] * texels[0], p[1] * texels[1]].map(f64::from);
-    let (center, displacement) = (scaled(pixel.footprint.center), scaled(pixel.displacement));
-    let lines = Lines { level: &surface.levels[0], conic: Conic::from(&ellipse), center, displacement, spacing: 1.0 };
+    let (center, displacement) = (scaled(pixel.base), scaled(pixel.displacement));
+    let lines = Lines { level: surface.base(), conic: Conic::from(&ellipse), center, displacement, spacing: 1.0 };
     let width = 2.0 * lines.half_width();
-    Lines { spacing: width / (0.65 * f64::from(base_level(Filter::Horizon).lines)), ..lines }
+    Lines { spacing: width / (0.65 * 64.0), ..lines }
 }
 
 /// A floor's footprint: `aspect` times as long along the view as across.
-fn floor_pixel(center: [f32; 2], across: f32, aspect: f32, angle: f32, walk: f32) -> Pixel {
+fn floor_pixel(center: [f32; 2], across: f32, aspect: f32, angle: f32, walk: f32) -> Footprint {
     let (c, s) = (angle.cos(), angle.sin());
-    Pixel::new(center, [-s * across, c * across], [c * across * aspect, s * across * aspect], [c * walk, s * walk])
+    Footprint::new(center, [-s * across, c * across], [c * across * aspect, s * across * aspect], [c * walk, s * walk])
 }
 
 #[test]
@@ -391,9 +423,9 @@ fn averages_of_long_ellipses_are_close_to_many_rays() {
         let center = [0; 2].map(|_| random.within(0.0, 1.0));
         let angle = random.within(0.0, std::f32::consts::TAU);
         let pixel = floor_pixel(center, random.within(0.01, 0.1), random.within(1.0, 12.0), angle, 0.0);
-        let truth = supersampled(&surface, &pixel.footprint, pixel.displacement, 24);
+        let truth = supersampled(&surface, &pixel, 24);
         for (every_texel, sum) in [true, false].into_iter().zip(&mut squares) {
-            let color = invariants::filtered(&surface, &pixel, &Settings { every_texel, ..settings(Filter::Ewa) });
+            let color = invariants::filtered(&surface, &pixel, &Filter::Ewa(Ewa { every_texel, ..Ewa::default() }));
             *sum += (0..3).map(|i| (f64::from(color[i]) - truth[i]).powi(2)).sum::<f64>() / 3.0;
         }
     }
@@ -408,8 +440,8 @@ fn averages_far_from_the_texture_are_finite() {
     let surface = surface(maps(4096, 2, Wrap::Repeat, 3));
     for place in [1e6, -1e6, 999_999.94, 16_777.216] {
         for view in [[1.0, 0.0], [16.0, 16.0], [0.0, 1e-7]] {
-            let pixel = Pixel::new([place, -place], view, [view[1], 0.003], [0.0; 2]);
-            let color = invariants::filtered(&surface, &pixel, &settings(Filter::Ewa));
+            let pixel = Footprint::new([place, -place], view, [view[1], 0.003], [0.0; 2]);
+            let color = invariants::filtered(&surface, &pixel, &Filter::Ewa(Ewa::default()));
             assert!(color.iter().all(|c| (0.0..=1.001).contains(c)), "{place} {view:?} {color:?}");
         }
     }
@@ -425,9 +457,10 @@ fn horizon_is_close_to_many_rays_and_visible_less_so() {
         let angle = random.within(0.0, std::f32::consts::TAU);
         let across = random.within(0.01, 0.1);
         let pixel = floor_pixel(center, across, random.within(1.0, 4.0), angle, random.within(0.0, 0.4));
-        let truth = supersampled(&surface, &pixel.footprint, pixel.displacement, 24);
-        for (filter, sum) in [Filter::Horizon, Filter::Visible].into_iter().zip(&mut squares) {
-            let color = invariants::filtered(&surface, &pixel, &base_level(filter));
+        let truth = supersampled(&surface, &pixel, 24);
+        let visible = Visible { texel_budget: 0, ..Visible::default() };
+        for (filter, sum) in [Filter::Horizon(horizon(64)), Filter::Visible(visible)].iter().zip(&mut squares) {
+            let color = invariants::filtered(&surface, &pixel, filter);
             *sum += (0..3).map(|i| (f64::from(color[i]) - truth[i]).powi(2)).sum::<f64>() / 3.0;
         }
     }
@@ -446,12 +479,10 @@ fn flat_horizon_is_the_gaussian_over_bilinear_texels() {
         let center = [0; 2].map(|_| random.within(0.0, 1.0));
         let (across, aspect) = (random.within(0.005, 0.2), random.within(1.0, 3.0));
         let pixel = floor_pixel(center, across, aspect, random.within(0.0, 6.3), 0.0);
-        let found = horizon::visible_mean(&surface, &pixel.footprint, [0.0; 2], &base_level(Filter::Horizon), None).0;
-        let error = |expected: [f64; 3]| {
-            (0..3).map(|i| (f64::from(unit(found.color[i])) - expected[i]).abs()).fold(0.0, f64::max)
-        };
+        let found = invariants::filtered(&surface, &pixel, &Filter::Horizon(horizon(64)));
+        let error = |expected: [f64; 3]| (0..3).map(|i| (f64::from(found[i]) - expected[i]).abs()).fold(0.0, f64::max);
         worst_lines = worst_lines.max(error(reference_lines(&surface, &pixel).mean()));
-        worst = worst.max(error(supersampled(&surface, &pixel.footprint, [0.0; 2], 64)));
+        worst = worst.max(error(supersampled(&surface, &pixel, 64)));
     }
     println!("flat: {worst_lines} from the reference's lines, {worst} from the integral");
     // The goal is 1e-5 on the lines; interpolation in 15 bits alone is worth 3e-5. Lines a texel apart blur between two
@@ -471,7 +502,7 @@ fn anisotropic_is_close_to_isotropic_and_sharper() {
             let w = 1.0 + 2.5 * i as f32 / 63.0;
             let pixel = floor_pixel([i as f32 / 64.0, 0.3], w / 128.0, w, 0.0, 0.0);
             let of = |max_anisotropy: f32| {
-                invariants::filtered(&surface, &pixel, &Settings { max_anisotropy, ..settings(Filter::Ewa) })[0]
+                invariants::filtered(&surface, &pixel, &Filter::Ewa(Ewa { max_anisotropy, ..Ewa::default() }))[0]
             };
             let error = (of(limit) - of(1.0)).abs();
             (sum, most) = (sum + error, most.max(error));
@@ -485,13 +516,11 @@ fn anisotropic_is_close_to_isotropic_and_sharper() {
 fn limits_of_16_and_1024_are_equal_where_the_footprint_is_below() {
     let checker = ColorImage::from_fn(32, 32, |x, y| [if (x + y) % 2 == 0 { 0.0 } else { 1.0 }; 3]);
     let surface = surface(SurfaceMaps { albedo: Some(checker), ..Default::default() });
-    for filter in [Filter::Ewa, Filter::Visible, Filter::Horizon] {
+    for filter in limited_filters().map(|filter| with_lines(filter, 16)) {
         let mut num_widened = 0;
         for i in 0..200 {
             let pixel = floor_pixel([0.1 * i as f32, 0.37 * i as f32], 0.02, 1.0 + 0.07 * i as f32, 1.0, 0.0);
-            let of = |max_anisotropy: f32| {
-                invariants::filtered(&surface, &pixel, &Settings { max_anisotropy, ..settings(filter) })
-            };
+            let of = |limit| invariants::filtered(&surface, &pixel, &with_limit(filter, limit));
             assert_eq!(of(16.0), of(1024.0), "{filter:?} {i}");
             num_widened += usize::from(of(1.0) != of(16.0));
         }
@@ -504,16 +533,16 @@ fn limits_of_16_and_1024_are_equal_where_the_footprint_is_below() {
 fn magnified_footprints_are_smooth() {
     let lines = ColorImage::from_fn(16, 16, |x, _| [if x % 4 == 0 { 1.0 } else { 0.0 }; 3]);
     let surface = surface(SurfaceMaps { albedo: Some(lines), ..Default::default() });
-    for filter in [Filter::Ewa, Filter::Visible, Filter::Horizon] {
+    for filter in limited_filters().map(|filter| with_lines(filter, 16)) {
         let step = 1.0 / 512.0;
         let at = |i: usize| {
-            let pixel = Pixel::new([i as f32 * step, 0.31], [step, 0.0], [0.0, step], [0.0; 2]);
-            invariants::filtered(&surface, &pixel, &settings(filter))[0]
+            let pixel = Footprint::new([i as f32 * step, 0.31], [step, 0.0], [0.0, step], [0.0; 2]);
+            invariants::filtered(&surface, &pixel, &filter)[0]
         };
         let row: Vec<f32> = (0..512).map(at).collect();
         // 32 pixels a texel: bilinear interpolation changes by 1/32 a pixel. The ellipse of texel centres has an edge,
         // where a texel of weight exp(-2) comes in.
-        let most = if filter == Filter::Horizon { 0.04 } else { 0.2 };
+        let most = if matches!(filter, Filter::Horizon(_)) { 0.04 } else { 0.2 };
         let steepest = row.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
         assert!(steepest < most, "{filter:?} changes by {steepest} from pixel to pixel");
         assert!(row.iter().all(|c| (0.0..1.00001).contains(c)), "{filter:?}");

@@ -2,23 +2,28 @@
 
 mod common;
 
-use basrelief::filter::{Ellipse, Footprint, RECONSTRUCTION, differences};
+use basrelief::footprint::{Ellipse, Footprint, differences};
 use basrelief::geometry::project;
 use basrelief::raster::{AttributePlanes, QuadPair};
 use basrelief::reference::{Conic, derivatives};
 use basrelief::relief::{HeightField, displacement, march};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::Wrap;
-use basrelief::{Camera, Derivatives, Formulas, Material, Mesh, Scene, Settings};
+use basrelief::{Camera, Derivatives, FootprintRule, Formulas, Material, Mesh, RECONSTRUCTION, Scene, Settings};
 use common::{Random, rough_surface};
 use glam::{Vec2, Vec3};
 
-const ALL: [(Derivatives, Formulas); 4] = [
-    (Derivatives::Flat, Formulas::Meant),
-    (Derivatives::Flat, Formulas::Printed),
-    (Derivatives::Relief, Formulas::Meant),
-    (Derivatives::Relief, Formulas::Printed),
+const ALL: [FootprintRule; 4] = [
+    rule(Derivatives::Flat, Formulas::Meant),
+    rule(Derivatives::Flat, Formulas::Printed),
+    rule(Derivatives::Relief, Formulas::Meant),
+    rule(Derivatives::Relief, Formulas::Printed),
 ];
+
+/// The formulas alone: a jump of the relief is a slope.
+const fn rule(derivatives: Derivatives, formulas: Formulas) -> FootprintRule {
+    FootprintRule { derivatives, formulas, max_stretch: 0.0, is_traced: true }
+}
 
 /// A triangle somewhere before a camera somewhere, with any texture coordinates.
 fn random_scene(random: &mut Random) -> Scene {
@@ -62,9 +67,9 @@ fn quad_derivatives_are_differences_of_coordinates_to_the_bit() {
             let pair = QuadPair::new(0, origin, [1; 8], [&planes; 2]);
             let reach = displacement(&pair.view(), 0.1);
             let depth = march(&field, &pair.uv, &reach);
-            for which in ALL {
-                let found = differences(&pair.uv, &[reach[0] * depth, reach[1] * depth], which);
-                check_quads(&found, which, |place| alone(&planes, &field, place), origin);
+            for rule in ALL {
+                let found = differences(&pair.uv, &[reach[0] * depth, reach[1] * depth], &rule);
+                check_quads(found, &rule, |place| alone(&planes, &field, place), origin);
             }
         }
     }
@@ -72,8 +77,8 @@ fn quad_derivatives_are_differences_of_coordinates_to_the_bit() {
 }
 
 fn check_quads(
-    found: &basrelief::filter::Differences,
-    which: (Derivatives, Formulas),
+    [found_dx, found_dy]: [[PixelLanes; 2]; 2],
+    rule: &FootprintRule,
     at: impl Fn([i32; 2]) -> ([f32; 2], [f32; 2]),
     origin: [[i32; 2]; 2],
 ) {
@@ -83,11 +88,11 @@ fn check_quads(
         // The x-difference in the pixel's row of the quad, the y-difference in its column.
         let along_row = [[x, y + dy], [x + 1, y + dy], [x, y + dy]].map(&at);
         let along_column = [[x + dx, y], [x + dx, y], [x + dx, y + 1]].map(&at);
-        let formula = |places: [([f32; 2], [f32; 2]); 3]| derivatives(places.map(|p| p.0), places.map(|p| p.1), which);
+        let formula = |places: [([f32; 2], [f32; 2]); 3]| derivatives(places.map(|p| p.0), places.map(|p| p.1), rule);
         let ([dudx, dvdx, _, _], [_, _, dudy, dvdy]) = (formula(along_row), formula(along_column));
         let expected = [dudx, dvdx, dudy, dvdy].map(|d| if d.is_finite() { d } else { 0.0 });
-        let lanes = [found.dx[0], found.dx[1], found.dy[0], found.dy[1]].map(|lanes| lanes.to_array()[lane]);
-        assert_eq!(lanes.map(f32::to_bits), expected.map(f32::to_bits), "{which:?} {lanes:?} {expected:?}");
+        let lanes = [found_dx[0], found_dx[1], found_dy[0], found_dy[1]].map(|lanes| lanes.to_array()[lane]);
+        assert_eq!(lanes.map(f32::to_bits), expected.map(f32::to_bits), "{rule:?} {lanes:?} {expected:?}");
     }
 }
 
@@ -97,7 +102,7 @@ fn printed_formulas_are_the_papers_letters() {
     let (uv, offsets) = ([[1.0, 20.0], [300.0, 4_000.0], [5e4, 6e5]], [[0.5, 0.25], [0.125, 3.0], [7.0, 11.0]]);
     let [[u, v], [u1, v1], [u2, v2]]: [[f32; 2]; 3] = uv;
     let [[m, r], [n, o], [p, s]]: [[f32; 2]; 3] = offsets;
-    let [flat, flat_printed, relief, relief_printed] = ALL.map(|which| derivatives(uv, offsets, which));
+    let [flat, flat_printed, relief, relief_printed] = ALL.map(|rule| derivatives(uv, offsets, &rule));
     assert_eq!(flat, [u1 - u, v1 - v, u2 - u, v2 - v]);
     assert_eq!(flat_printed, [u1 - u, v1 - u, u2 - u, v2 - u]);
     assert_eq!(relief, [(u1 + n) - (u + m), (v1 + o) - (v + r), (u2 + p) - (u + m), (v2 + s) - (v + r)]);
@@ -105,11 +110,11 @@ fn printed_formulas_are_the_papers_letters() {
     let lanes = |i: usize, c: usize, of: [[f32; 2]; 3]| {
         PixelLanes::new([0, 1, 2, 0, 0, 1, 2, 0].map(|pixel| of[pixel][c] * (i + 1) as f32))
     };
-    for which in ALL {
-        let found =
-            differences(&[lanes(0, 0, uv), lanes(0, 1, uv)], &[lanes(0, 0, offsets), lanes(0, 1, offsets)], which);
-        let first = [found.dx[0], found.dx[1], found.dy[0], found.dy[1]].map(|lanes| lanes.to_array()[0]);
-        assert_eq!(first, derivatives(uv, offsets, which), "{which:?}");
+    for rule in ALL {
+        let [dx, dy] =
+            differences(&[lanes(0, 0, uv), lanes(0, 1, uv)], &[lanes(0, 0, offsets), lanes(0, 1, offsets)], &rule);
+        let first = [dx[0], dx[1], dy[0], dy[1]].map(|lanes| lanes.to_array()[0]);
+        assert_eq!(first, derivatives(uv, offsets, &rule), "{rule:?}");
     }
 }
 
@@ -120,7 +125,7 @@ fn random_footprint(random: &mut Random) -> Footprint {
         let angle = random.within(0.0, std::f32::consts::TAU);
         [length * angle.cos(), length * angle.sin()]
     };
-    Footprint { center: [0.0; 2], dx: vector(), dy: vector() }
+    Footprint { dx: vector(), dy: vector(), ..Footprint::default() }
 }
 
 #[test]

@@ -2,10 +2,11 @@
 
 mod common;
 
-use basrelief::inspect::{self, Conic, Cut, Figure, Inspection, View, measure};
+use basrelief::footprint::Ellipse;
+use basrelief::inspect::{self, Cut, Figure, Inspection, View, measure};
 use basrelief::relief::HeightField;
 use basrelief::texture::{Surface, Wrap};
-use basrelief::{Derivatives, Filter, Formulas, Scene, Settings, reference, scene};
+use basrelief::{Derivatives, Filter, FootprintRule, Formulas, Scene, Settings, Visible, reference, scene};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -22,15 +23,10 @@ fn set(texels: &[[i32; 2]]) -> BTreeSet<[i32; 2]> {
     texels.iter().copied().collect()
 }
 
-fn conic(Conic { a, b, c, f }: Conic) -> reference::Conic {
-    let [a, b, c, f] = [a, b, c, f].map(f64::from);
-    reference::Conic { a, b, c, f }
-}
-
 /// The texels of the reference's ellipse, apart from those within rounding of its edge: inside, and inside or near.
 fn reference_texels(seen: &Inspection, projected: &inspect::Projected) -> [BTreeSet<[i32; 2]>; 2] {
     let hit = [0, 1].map(|i| f64::from(seen.ray.hit[i] * seen.sets.texels_per_repeat[i]));
-    let near = reference::texels(&conic(projected.widened), hit, 1e-3);
+    let near = reference::texels(&reference::Conic::from(&projected.widened), hit, 1e-3);
     let inside = near.iter().filter(|(_, r2)| *r2 < 1.0 - 1e-3).map(|(texel, _)| *texel).collect();
     [inside, near.into_iter().map(|(texel, _)| texel).collect()]
 }
@@ -82,7 +78,7 @@ fn figure_3_the_relief_changes_shape_and_area() {
 /// Every texel of T by a ray of the reference, which decides all but ties.
 fn check_visibility(seen: &Inspection) {
     let surface = street();
-    let level = &surface.levels[seen.sets.level];
+    let level = &surface.levels()[seen.sets.level];
     let displacement = seen.sets.displacement.map(f64::from);
     for (texels, is_hidden) in [(&seen.sets.visible, false), (&seen.sets.hidden, true)] {
         for &texel in texels {
@@ -119,7 +115,7 @@ fn figure_5_each_texel_that_must_not_count_has_a_visible_one_before_it() {
         assert!(towards_eye > 0.0, "{texel:?} is covered from behind, by {coverer:?}");
         // A chain of coverers may step aside by a texel at each link.
         assert!(aside <= towards_eye, "{texel:?} is covered from aside, by {coverer:?}");
-        let margin = reference::ray_margin(&surface.levels[0], *coverer, seen.sets.displacement.map(f64::from));
+        let margin = reference::ray_margin(surface.base(), *coverer, seen.sets.displacement.map(f64::from));
         assert!(margin <= reference::RAY_TIE, "what is seen in its place is visible: {coverer:?}");
     }
 }
@@ -149,14 +145,15 @@ fn readings_are_the_references_formulas() {
                 let of = |here: inspect::Corner, other: inspect::Corner| {
                     let uv = [here.uv, other.uv, other.uv];
                     let offsets = [here.offset, other.offset, other.offset];
-                    reference::derivatives(uv, offsets, (derivatives, reading.formulas))
+                    let rule = FootprintRule { derivatives, formulas: reading.formulas, ..FootprintRule::FLAT };
+                    reference::derivatives(uv, offsets, &rule)
                 };
                 let ([ux, vx, ..], [.., uy, vy]) = (of(left, right), of(upper, lower));
                 assert_eq!((projected.dx, projected.dy), ([ux, vx], [uy, vy]), "{reading:?}");
                 let texels = seen.sets.texels_per_repeat;
                 let scaled = [ux * texels[0], vx * texels[1], uy * texels[0], vy * texels[1]].map(f64::from);
                 let expected = reference::Conic::new(scaled, reading.formulas);
-                let Conic { a, b, c, f } = projected.conic;
+                let Ellipse { a, b, c, f } = projected.conic;
                 for (ours, theirs) in [(a, expected.a), (b, expected.b), (c, expected.c), (f, expected.f)] {
                     let scale = expected.a.abs().max(expected.c.abs()).max(expected.f.abs());
                     assert!((f64::from(ours) - theirs).abs() <= 1e-5 * scale, "{ours} {theirs}");
@@ -230,7 +227,8 @@ fn what_cannot_be_inspected_is_named() {
 #[test]
 fn views_say_of_a_pixel_what_the_inspector_says() {
     let scene = scene::builtin();
-    let settings = Settings { width: 80, height: 45, filter: Filter::Visible, max_stretch: 0.0, ..Settings::default() };
+    let filter = Filter::Visible(Visible { max_stretch: 0.0, ..Visible::default() });
+    let settings = Settings { width: 80, height: 45, filter, ..Settings::default() };
     let of = |view| measure(&scene, &settings, view).unwrap();
     let (visible, footprint, mip, uv) = (of(View::Visible), of(View::Footprint), of(View::Mip), of(View::Uv));
     let mut num = 0;

@@ -70,9 +70,8 @@ impl Files {
     /// Heights of the first row (v = 0), 0 to 65535.
     fn heights(&self) -> Vec<i32> {
         let surface = self.surface();
-        (0..surface.levels[0].width as i32)
-            .map(|x| (surface.levels[0].height_at(x, 0) * 65535.0).round() as i32)
-            .collect()
+        let base = surface.base();
+        (0..base.size()[0] as i32).map(|x| (base.height_at(x, 0) * 65535.0).round() as i32).collect()
     }
 }
 
@@ -179,7 +178,7 @@ fn albedo_is_the_colour_map_in_linear_light_and_kd_beside_it() {
     let material = &loaded.scene.materials[0];
     assert_eq!(material.diffuse, Vec3::new(0.5, 0.25, 1.0));
     assert_eq!((material.specular, material.shininess), (Vec3::new(0.1, 0.2, 0.3), 20.0));
-    assert_eq!(material.surface.as_ref().expect("a surface").color_scale, 1.0);
+    assert_eq!(material.surface.as_ref().expect("a surface").color_scale(), 1.0);
 }
 
 /// By the letter it is a highlight of no end, which washes out all that the light reaches.
@@ -232,9 +231,9 @@ fn a_gray_bump_is_a_height_map_and_a_coloured_one_a_normal_map() {
         files.options.keep_normals = true;
         files.image("b.png", RgbImage::from_fn(2, 1, |x, _| Rgb([x as u8 * 255; 3])));
         assert_eq!(files.heights(), [0, 65535], "gray in three channels");
-        assert_eq!(files.surface().relief_depth, 0.2);
+        assert_eq!(files.surface().relief_depth(), 0.2);
         files.image("b.png", one(128, 128, 255));
-        assert_eq!(files.surface().relief_depth, 0.0);
+        assert_eq!(files.surface().relief_depth(), 0.0);
         assert!(has(&files.load().choices, "normals from map_Bump b.png"));
     }
 }
@@ -245,9 +244,9 @@ fn norm_and_map_kn_are_normal_maps_with_green_up_or_down() {
         let mut files = Files::quad(line);
         files.options.keep_normals = true;
         files.image("n.png", one(128, 255, 128));
-        let up = format!("{:?}", files.surface().levels[0]);
+        let up = format!("{:?}", files.surface().base());
         files.options.all.normal_y = Some(NormalY::Down);
-        assert_ne!(up, format!("{:?}", files.surface().levels[0]), "{line}");
+        assert_ne!(up, format!("{:?}", files.surface().base()), "{line}");
         files.options.keep_normals = false;
         assert!(files.load().scene.materials[0].surface.is_none(), "nothing else is in the material");
     }
@@ -257,9 +256,9 @@ fn norm_and_map_kn_are_normal_maps_with_green_up_or_down() {
 fn bm_is_the_depth_unless_the_caller_says_another() {
     let mut files = Files::quad("disp h.png -bm 0.1");
     files.image("h.png", gray(&[0, 255]));
-    assert_eq!(files.surface().relief_depth, 0.1);
+    assert_eq!(files.surface().relief_depth(), 0.1);
     files.options.all.relief_depth = Some(0.02);
-    assert_eq!(files.surface().relief_depth, 0.02);
+    assert_eq!(files.surface().relief_depth(), 0.02);
     files.options.all.relief_depth = Some(f32::NAN);
     assert!(files.refusal().contains("relief_depth"));
 }
@@ -292,12 +291,12 @@ fn imfchan_picks_the_channel() {
 fn clamp_and_the_wrap_option() {
     let mut files = Files::quad("map_Kd -clamp on a.png");
     files.image("a.png", one(1, 2, 3));
-    assert_eq!(files.surface().wrap, Wrap::Clamp);
+    assert_eq!(files.surface().wrap(), Wrap::Clamp);
     files.options.all.wrap = Some(Wrap::Mirror);
-    assert_eq!(files.surface().wrap, Wrap::Mirror);
+    assert_eq!(files.surface().wrap(), Wrap::Mirror);
     files.options.all.wrap = None;
     files.write("s.mtl", "newmtl stone\nmap_Kd -clamp off a.png\n");
-    assert_eq!(files.surface().wrap, Wrap::Repeat);
+    assert_eq!(files.surface().wrap(), Wrap::Repeat);
 }
 
 #[test]
@@ -385,7 +384,7 @@ fn high_dynamic_range_keeps_its_scale() {
     for name in ["a.exr", "a.hdr"] {
         let files = Files::quad(&format!("map_Kd {name}"));
         files.image(name, Rgb32FImage::from_fn(2, 1, |x, _| Rgb([[0.5, 8.0][x as usize], 0.25, 0.0])));
-        assert_eq!(files.surface().color_scale, 8.0, "{name}");
+        assert_eq!(files.surface().color_scale(), 8.0, "{name}");
     }
 }
 
@@ -394,8 +393,7 @@ fn any_size_and_maps_of_different_sizes() {
     let files = Files::quad("map_Kd a.png\ndisp h.png");
     files.image("a.png", RgbImage::from_pixel(7, 3, Rgb([9, 9, 9])));
     files.image("h.png", gray(&[0, 100, 200, 100, 0]));
-    let level = &files.surface().levels[0];
-    assert_eq!((level.width, level.height), (7, 3));
+    assert_eq!(files.surface().base().size(), [7, 3]);
 }
 
 // ---- what is missing or wrong

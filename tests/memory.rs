@@ -2,9 +2,8 @@
 
 mod common;
 
-use basrelief::frame::Pixel;
 use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Camera, Filter, Frame, Material, Mesh, Renderer, Scene, Settings};
+use basrelief::{Camera, DrawnPixel, Filter, Frame, Horizon, Material, Mesh, Renderer, Scene, Settings, Trilinear};
 use common::{Random, flat_surface, floor_scene};
 use glam::Vec3;
 use peak_alloc::PeakAlloc;
@@ -42,11 +41,11 @@ fn grid(side: u32) -> Scene {
 }
 
 /// The first frame of a renderer, which fills its buffers, on two threads.
-fn frame<P: Pixel>(scene: Scene, settings: Settings) -> usize {
+fn frame<P: DrawnPixel>(scene: Scene, settings: Settings) -> usize {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
     let mut renderer = Renderer::new(scene, settings).expect("a valid scene");
     let mut frame = Frame::<P>::default();
-    pool.install(|| peak(|| renderer.render_into(&mut frame, &|| 0.0)).0)
+    pool.install(|| peak(|| renderer.render_into(&mut frame)).0)
 }
 
 /// A surface without normals, as the program makes them where there is no light.
@@ -67,7 +66,8 @@ fn surface(size: u32, relief_depth: f32) -> Surface {
 /// One test, since the heap is counted for the whole process.
 #[test]
 fn memory_is_bounded() {
-    let settings = Settings { width: 1024, height: 1024, filter: Filter::Trilinear, ..Settings::default() };
+    let filter = Filter::Trilinear(Trilinear::default());
+    let settings = Settings { width: 1024, height: 1024, filter, ..Settings::default() };
     let num_triangles = 2 * 400 * 400;
     let few = frame::<Linear>(grid(1), settings.clone());
     let many = frame::<Linear>(grid(400), settings.clone());
@@ -91,8 +91,8 @@ fn memory_is_bounded() {
         let kept = surface.num_bytes();
         let before = HEAP.current_usage();
         let scene = floor_scene(surface, 1.0);
-        let renderer =
-            Renderer::new(scene, Settings { far_field: false, ..Settings::default() }).expect("a valid scene");
+        let filter = Filter::Horizon(Horizon { far_field: false, ..Horizon::default() });
+        let renderer = Renderer::new(scene, Settings { filter, ..Settings::default() }).expect("a valid scene");
         let tables = HEAP.current_usage() - before;
         drop(renderer);
         let [most, kept, tables] = [most, kept, tables].map(|bytes| bytes as f64 / f64::from(1024 * 1024));

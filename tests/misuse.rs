@@ -2,8 +2,8 @@
 
 use basrelief::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps, Wrap};
 use basrelief::{
-    Camera, Derivatives, Error, Filter, Formulas, Frame, Light, Lighting, Material, Mesh, Region, Renderer, Scene,
-    Settings, Visibility, metrics,
+    Camera, Derivatives, Error, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material, Mesh, Rays, Region,
+    Renderer, Scene, Settings, Trilinear, Visibility, Visible, metrics,
 };
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
@@ -23,7 +23,8 @@ const _: () = {
     is_send_and_sync::<metrics::Difference>();
     is_send_and_sync::<basrelief::load::LoadOptions>();
     is_send_and_sync::<basrelief::load::Loaded>();
-    is_send_and_sync::<basrelief::invariants::Pixel>();
+    is_send_and_sync::<basrelief::invariants::Footprint>();
+    is_send_and_sync::<basrelief::filter::Prepared>();
 };
 
 fn cases(num: u32) -> ProptestConfig {
@@ -44,61 +45,59 @@ fn pick<T: Clone + std::fmt::Debug + 'static>(values: &[T]) -> impl Strategy<Val
     prop::sample::select(values.to_vec())
 }
 
-fn settings() -> impl Strategy<Value = Settings> {
-    // Huge frames are valid; what is drawn here is small or not valid at all.
-    let side = || prop_oneof![15 => 1_u32..20, 1 => Just(0), 1 => 32769..=u32::MAX];
+/// A filter with options that may be out of their ranges.
+fn filter() -> impl Strategy<Value = Filter> {
     let count = || prop_oneof![12 => 1_u32..12, 1 => Just(0), 1 => 65537..=u32::MAX];
-    let filters = [
-        Filter::Nearest,
-        Filter::Bilinear,
-        Filter::Trilinear,
-        Filter::Ewa,
-        Filter::Visible,
-        Filter::Horizon,
-        Filter::Parallax,
-        Filter::Truth,
-    ];
+    let limit = || prop_oneof![5 => 1.0_f32..80.0, 1 => number()];
+    let near_one = || prop_oneof![5 => 0.9_f32..1.1, 1 => number()];
     let modes = (
-        pick(&filters),
+        pick(&Filter::ALL),
         pick(&[Visibility::Exact, Visibility::TwoEnded, Visibility::Resolved]),
         pick(&[Derivatives::Flat, Derivatives::Relief]),
         pick(&[Formulas::Meant, Formulas::Printed]),
-        pick(&[Lighting::Unlit, Lighting::Lit]),
-        any::<[bool; 4]>(),
+        any::<[bool; 2]>(),
     );
-    let limit = || prop_oneof![5 => 1.0_f32..80.0, 1 => number()];
-    let near_one = || prop_oneof![5 => 0.9_f32..1.1, 1 => number()];
+    let counts = (count(), count(), count(), prop_oneof![0_u32..300, any::<u32>()]);
     let limits = [limit().boxed(), limit().boxed(), near_one().boxed(), near_one().boxed()];
-    let sizes = (side(), side(), count(), count(), count(), limits);
-    let grids = (pick(&[1, 1, 4, 8, 0, 2, u32::MAX]), pick(&[8, 16, 32, 64, 256, 32, 8, 0, 7, 512, u32::MAX]));
-    let texels = prop_oneof![0_u32..300, any::<u32>()];
-    let region = prop_oneof![3 => Just(None), 1 => [side(), side(), side(), side()].prop_map(Some)];
-    (modes, sizes, grids, texels, region).prop_map(
+    (modes, counts, limits).prop_map(
         |(
-            (filter, visibility, derivatives, formulas, lighting, [parallax, far_field, cull_back_faces, every_texel]),
-            (width, height, samples, lines, far_field_mib, [max_anisotropy, max_stretch, cut, texel_kernel]),
-            (msaa, tile_size),
-            texel_budget,
-            region,
-        )| Settings {
+            (filter, visibility, derivatives, formulas, [far_field, every_texel]),
+            (samples, lines, far_field_mib, texel_budget),
+            [max_anisotropy, max_stretch, cut, texel_kernel],
+        )| match filter {
+            Filter::Nearest | Filter::Bilinear => filter,
+            Filter::Trilinear(_) => Filter::Trilinear(Trilinear { derivatives, formulas }),
+            Filter::Ewa(_) => {
+                Filter::Ewa(Ewa { derivatives, formulas, texel_budget, max_anisotropy, every_texel, cut, texel_kernel })
+            }
+            Filter::Visible(_) => Filter::Visible(Visible {
+                visibility,
+                derivatives,
+                formulas,
+                texel_budget,
+                max_anisotropy,
+                max_stretch,
+            }),
+            Filter::Horizon(_) => Filter::Horizon(Horizon { lines, far_field, far_field_mib, max_anisotropy }),
+            Filter::Parallax(_) => Filter::Parallax(Rays { samples }),
+            Filter::Truth(_) => Filter::Truth(Rays { samples }),
+        },
+    )
+}
+
+fn settings() -> impl Strategy<Value = Settings> {
+    // Huge frames are valid; what is drawn here is small or not valid at all.
+    let side = || prop_oneof![15 => 1_u32..20, 1 => Just(0), 1 => 32769..=u32::MAX];
+    let region = prop_oneof![3 => Just(None), 1 => [side(), side(), side(), side()].prop_map(Some)];
+    let grids = (pick(&[1, 1, 4, 8, 0, 2, u32::MAX]), pick(&[8, 16, 32, 64, 256, 32, 8, 0, 7, 512, u32::MAX]));
+    let modes = (filter(), pick(&[Lighting::Unlit, Lighting::Lit]), any::<[bool; 2]>());
+    (side(), side(), region, modes, grids).prop_map(
+        |(width, height, region, (filter, lighting, [parallax, cull_back_faces]), (msaa, tile_size))| Settings {
             width,
             height,
             region: region.map(|[x, y, width, height]| Region { x, y, width, height }),
             filter,
-            visibility,
             parallax,
-            derivatives,
-            formulas,
-            texel_budget,
-            cut,
-            texel_kernel,
-            every_texel,
-            max_anisotropy,
-            max_stretch,
-            samples,
-            lines,
-            far_field,
-            far_field_mib,
             lighting,
             cull_back_faces,
             msaa,
@@ -133,27 +132,6 @@ fn maps() -> impl Strategy<Value = SurfaceMaps> {
     )
 }
 
-/// A surface, at times with fields that were changed after it was made.
-fn surface() -> impl Strategy<Value = Option<Surface>> {
-    let change = prop_oneof![8 => Just(0_u8), 3 => 1_u8..10];
-    (maps(), change, number()).prop_map(|(maps, change, x)| {
-        let mut surface = Surface::new(maps).ok()?;
-        match change {
-            1 => surface.levels.clear(),
-            2 => drop(surface.transposed.pop()),
-            3 => surface.levels[0].width += 1,
-            4 => surface.transposed[0].height = usize::MAX,
-            5 => surface.relief_depth = x,
-            6 => surface.color_scale = x,
-            7 => surface.repeats_stored = 3 - surface.repeats_stored,
-            8 => surface.wrap = if surface.wrap == Wrap::Clamp { Wrap::Repeat } else { Wrap::Clamp },
-            9 => surface.has_normals = !surface.has_normals,
-            _ => {}
-        }
-        Some(surface)
-    })
-}
-
 fn mesh() -> impl Strategy<Value = Mesh> {
     let index = || prop_oneof![30 => 0_u32..6, 1 => any::<u32>()];
     let corners = (prop::collection::vec(vector(), 6), prop::collection::vec((number(), number()), 0..8));
@@ -182,14 +160,13 @@ fn scene() -> impl Strategy<Value = Scene> {
         true => Light::Point { position: place, intensity: intensity.abs() },
         false => Light::Directional { to_light: place, intensity: intensity.abs() },
     });
-    let material =
-        (surface(), vector(), vector(), number()).prop_map(|(surface, diffuse, specular, shininess)| Material {
-            surface: surface.map(Arc::new),
-            diffuse: diffuse.abs(),
-            specular: specular.abs(),
-            shininess: shininess.abs(),
-            ..Material::default()
-        });
+    let material = (maps(), vector(), vector(), number()).prop_map(|(maps, diffuse, specular, shininess)| Material {
+        surface: Surface::new(maps).ok().map(Arc::new),
+        diffuse: diffuse.abs(),
+        specular: specular.abs(),
+        shininess: shininess.abs(),
+        ..Material::default()
+    });
     let positive = |most: f32| prop_oneof![8 => 1e-3..most, 1 => number()];
     let camera = (vector(), vector(), prop_oneof![4 => Just(Vec3::Y), 1 => vector()], positive(170.0), positive(1.0))
         .prop_map(|(eye, target, up, fov_degrees, near)| Camera { eye, target, up, fov_degrees, near });
@@ -255,7 +232,7 @@ fn frames_too_large_are_refused_before_memory_is_taken() {
 #[test]
 fn many_renders_run_in_one_process_at_once() {
     let draw = |filter| {
-        let settings = Settings { width: 40, height: 30, filter, samples: 2, ..Settings::default() };
+        let settings = Settings { width: 40, height: 30, filter, ..Settings::default() };
         let heights = HeightImage::from_fn(16, 16, |x, y| ((x * 5 + y * 3) % 7) as f32 / 6.0);
         let maps = SurfaceMaps { height: Some(heights), ..SurfaceMaps::default() };
         let surface = Arc::new(Surface::new(maps).expect("valid maps"));
@@ -266,12 +243,17 @@ fn many_renders_run_in_one_process_at_once() {
         let materials = vec![Material { surface: Some(surface), ..Material::default() }];
         basrelief::render(Scene { meshes: vec![mesh], materials, ..Scene::default() }, settings).expect("a frame")
     };
-    let filters = [Filter::Nearest, Filter::Ewa, Filter::Visible, Filter::Horizon, Filter::Truth];
+    let few_rays = |filter| match filter {
+        Filter::Parallax(_) => Filter::Parallax(Rays { samples: 2 }),
+        Filter::Truth(_) => Filter::Truth(Rays { samples: 2 }),
+        other => other,
+    };
+    let filters = Filter::ALL.map(few_rays);
     let alone = filters.map(draw);
     std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..15).map(|i| scope.spawn(move || draw(filters[i % 5]))).collect();
+        let threads: Vec<_> = (0..16).map(|i| scope.spawn(move || draw(filters[i % 8]))).collect();
         for (i, thread) in threads.into_iter().enumerate() {
-            assert!(thread.join().expect("no panic") == alone[i % 5], "{:?}", filters[i % 5]);
+            assert!(thread.join().expect("no panic") == alone[i % 8], "{:?}", filters[i % 8]);
         }
     });
 }

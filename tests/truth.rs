@@ -3,28 +3,44 @@
 
 mod common;
 
-use basrelief::filter::differences_for;
+use basrelief::footprint::Footprints;
 use basrelief::geometry::project;
-use basrelief::invariants::{Pixel, visible_sets};
+use basrelief::invariants::visible_sets;
 use basrelief::metrics::compare;
 use basrelief::raster::{AttributePlanes, QuadPair};
-use basrelief::relief::{HeightField, displacement, march};
+use basrelief::relief::HeightField;
 use basrelief::texture::{Surface, SurfaceMaps, srgb_from_linear};
-use basrelief::{Camera, Derivatives, Filter, Frame, Renderer, Scene, Settings, Visibility};
+use basrelief::{
+    Camera, Derivatives, Ewa, Filter, Frame, Horizon, Rays, Renderer, Scene, Settings, Visibility, Visible,
+};
 use common::{cobbles, floor_scene};
 use std::sync::OnceLock;
 
 fn settings(filter: Filter) -> Settings {
-    Settings {
-        width: 160,
-        height: 90,
-        filter,
-        texel_budget: 0,
-        samples: 256,
-        far_field: false,
-        msaa: 1,
-        ..Settings::default()
-    }
+    Settings { width: 160, height: 90, filter, msaa: 1, ..Settings::default() }
+}
+
+/// All texels of the full texture.
+fn ewa() -> Ewa {
+    Ewa { texel_budget: 0, ..Ewa::default() }
+}
+
+/// The paper's method on the full texture.
+fn paper() -> Visible {
+    Visible { texel_budget: 0, ..Visible::default() }
+}
+
+/// The horizon without tables.
+fn sweeps() -> Filter {
+    Filter::Horizon(Horizon { far_field: false, ..Horizon::default() })
+}
+
+fn truth(samples: u32) -> Filter {
+    Filter::Truth(Rays { samples })
+}
+
+fn parallax(samples: u32) -> Filter {
+    Filter::Parallax(Rays { samples })
 }
 
 /// Seen so low, and with relief so deep, that much of every footprint is hidden.
@@ -39,19 +55,19 @@ fn draw(settings: Settings) -> Frame {
 /// Decibels of a filter against 256 rays a pixel.
 fn psnr(settings: Settings) -> f64 {
     static TRUTH: OnceLock<Frame> = OnceLock::new();
-    let truth = TRUTH.get_or_init(|| draw(self::settings(Filter::Truth)));
+    let truth = TRUTH.get_or_init(|| draw(self::settings(truth(256))));
     let psnr = compare(&(&draw(settings.clone())).into(), &truth.into()).expect("frames of one size").psnr_db;
-    println!("{:?} {:?} {:?}: {psnr:.2} dB", settings.filter, settings.visibility, settings.derivatives);
+    println!("{:?}: {psnr:.2} dB", settings.filter);
     psnr
 }
 
 fn visible(visibility: Visibility) -> f64 {
-    psnr(Settings { visibility, ..settings(Filter::Visible) })
+    psnr(settings(Filter::Visible(Visible { visibility, ..paper() })))
 }
 
 #[test]
 fn visible_texels_beat_all_texels() {
-    let ewa = psnr(settings(Filter::Ewa));
+    let ewa = psnr(settings(Filter::Ewa(ewa())));
     let exact = visible(Visibility::Exact);
     // The goal on the large floor is 6 dB more than all texels (6.4 there), and 30 dB (33.6 there).
     assert!(exact > ewa + 4.9 && exact > 36.0, "{exact} dB, {ewa} with all texels");
@@ -60,7 +76,7 @@ fn visible_texels_beat_all_texels() {
 #[test]
 fn jumps_of_the_relief_are_no_slopes() {
     let exact = visible(Visibility::Exact);
-    let by_the_letter = psnr(Settings { max_stretch: 0.0, ..settings(Filter::Visible) });
+    let by_the_letter = psnr(settings(Filter::Visible(Visible { max_stretch: 0.0, ..paper() })));
     // 1.3 dB on the large floor.
     assert!(exact > by_the_letter + 0.1, "{exact} dB, {by_the_letter} by formula (3) alone");
 }
@@ -74,29 +90,32 @@ fn two_ended_rows_come_close_to_rays_from_every_texel() {
 #[test]
 fn resolved_draws_what_exact_draws() {
     let [exact, resolved] = [Visibility::Exact, Visibility::Resolved]
-        .map(|visibility| draw(Settings { visibility, ..settings(Filter::Visible) }));
+        .map(|visibility| draw(settings(Filter::Visible(Visible { visibility, ..paper() }))));
     assert!(exact == resolved);
 }
 
 #[test]
 fn horizon_beats_the_visible_texels() {
-    let (exact, horizon) = (visible(Visibility::Exact), psnr(settings(Filter::Horizon)));
+    let (exact, horizon) = (visible(Visibility::Exact), psnr(settings(sweeps())));
     // The goal on the large floor at 16 lines is 44 dB (51.5 there).
     assert!(horizon > exact + 8.0 && horizon > 46.0, "{horizon} dB, {exact} by the paper's method");
 }
 
 #[test]
 fn many_rays_come_close_to_truth_and_few_do_not() {
-    let [few, many] = [1, 16].map(|samples| psnr(Settings { samples, ..settings(Filter::Parallax) }));
+    let [few, many] = [1, 16].map(|samples| psnr(settings(parallax(samples))));
     assert!(many > few + 6.0 && many > 30.0, "{few} and {many} dB");
-    let flat = psnr(Settings { parallax: false, derivatives: Derivatives::Flat, ..settings(Filter::Ewa) });
+    let flat = Filter::Ewa(Ewa { derivatives: Derivatives::Flat, ..ewa() });
+    let flat = psnr(Settings { parallax: false, ..settings(flat) });
     assert!(flat < 28.0, "without parallax {flat} dB");
 }
 
 #[test]
 fn sets_of_texels_are_the_papers_on_every_footprint_of_a_frame() {
     // Base level nearby; beyond the horizon, where a quad's footprints have no end, a coarse one.
-    let settings = Settings { width: 48, height: 27, texel_budget: 1024, ..settings(Filter::Visible) };
+    let visible = Visible { texel_budget: 1024, ..paper() };
+    let (filter, rule) = (Filter::Visible(visible), Filter::Visible(visible).footprint_rule());
+    let settings = Settings { width: 48, height: 27, ..settings(filter) };
     let scene = floor();
     let surface = scene.materials[0].surface.as_deref().expect("a relief floor");
     let field = HeightField::new(surface);
@@ -107,15 +126,9 @@ fn sets_of_texels_are_the_papers_on_every_footprint_of_a_frame() {
         let origin = [[quad % 24 * 2, quad / 24 * 2]; 2];
         for planes in &planes {
             let pair = QuadPair::new(0, origin, [1; 8], [planes; 2]);
-            let reach = displacement(&pair.view(), surface.relief_depth);
-            let depth = march(&field, &pair.uv, &reach);
-            let offset = reach.map(|lanes| lanes * depth);
-            let place = [pair.uv[0] + offset[0], pair.uv[1] + offset[1]];
-            let differences = differences_for(&pair.uv, &offset, &settings);
+            let pixels = Footprints::of_quads(&pair.uv, &pair.view(), Some(&field), &rule, u8::MAX);
             for lane in 0..4 {
-                let displacement = reach.map(|lanes| lanes.to_array()[lane]);
-                let pixel = Pixel { footprint: differences.footprint(&place, lane), displacement };
-                visible_sets(surface, &pixel, &settings).expect("the paper's sets");
+                visible_sets(surface, &pixels.lane(lane), &visible).expect("the paper's sets");
                 num += 1;
             }
         }
@@ -155,11 +168,11 @@ fn walk(renderer: &mut Renderer, num: usize) -> impl Iterator<Item = Frame> {
 
 #[test]
 fn horizon_is_steady_in_motion() {
-    let small = |filter| Settings { width: 96, height: 54, samples: 256, far_field: true, ..settings(filter) };
-    let mut renderer = Renderer::new(floor(), small(Filter::Truth)).expect("a valid scene");
+    let small = |filter| Settings { width: 96, height: 54, ..settings(filter) };
+    let mut renderer = Renderer::new(floor(), small(truth(256))).expect("a valid scene");
     let truths: Vec<_> = walk(&mut renderer, 8).collect();
-    let horizon = unrest(&small(Filter::Horizon), &truths);
-    let parallax = unrest(&Settings { samples: 4, ..small(Filter::Parallax) }, &truths);
+    let horizon = unrest(&small(Filter::default()), &truths);
+    let parallax = unrest(&small(parallax(4)), &truths);
     // A twentieth, over 60 frames too.
     println!("mean square of the error's change: horizon {horizon:e}, parallax with 4 rays {parallax:e}");
     assert!(horizon < 0.1 * parallax, "{horizon:e} against {parallax:e}");
@@ -168,14 +181,14 @@ fn horizon_is_steady_in_motion() {
 /// Where the floor goes from one mip level to the next, the mean error of a row does not jump by a step of 8-bit colour.
 #[test]
 fn changes_of_level_are_not_seen() {
-    let size = |filter| Settings { width: 320, height: 180, samples: 64, ..settings(filter) };
+    let size = |filter| Settings { width: 320, height: 180, ..settings(filter) };
     let row_means = |filter| {
         let frame = draw(size(filter));
         let srgb = |pixel: &[f32; 4]| pixel[..3].iter().map(|c| f64::from(srgb_from_linear(*c))).sum::<f64>() / 3.0;
         let rows = frame.pixels.chunks(frame.width as usize);
         rows.map(|row| row.iter().map(srgb).sum::<f64>() / row.len() as f64).collect::<Vec<_>>()
     };
-    let (truth, horizon) = (row_means(Filter::Truth), row_means(Filter::Horizon));
+    let (truth, horizon) = (row_means(truth(64)), row_means(sweeps()));
     let errors: Vec<_> = horizon.iter().zip(&truth).map(|(a, b)| a - b).collect();
     let step = errors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
     println!("greatest step of a row's mean error: {step:.5}");

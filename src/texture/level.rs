@@ -52,6 +52,11 @@ impl Level {
         Self { texels_per_repeat, rows: [rows, turned] }
     }
 
+    /// The same level with every texel in one packed colour.
+    pub(super) fn in_color(&self, color: [u32; 3]) -> Self {
+        Self { rows: self.rows.each_ref().map(|rows| rows.in_color(color)), ..*self }
+    }
+
     /// Texels that are stored along u and along v before the pattern wraps: two repeats of a mirrored texture, else one.
     pub fn size(&self) -> [usize; 2] {
         [self.rows[0].width(), self.rows[0].height()]

@@ -57,6 +57,16 @@ impl Rows {
         })
     }
 
+    /// The same rows with every texel in one packed colour.
+    pub(super) fn in_color(&self, [red, green, blue]: [u32; 3]) -> Self {
+        let words = self.words.iter().enumerate().map(|(i, word)| match i / self.stride() % self.num_planes {
+            0 => red | green << 16,
+            1 => blue | word & 0xffff_0000,
+            _ => *word,
+        });
+        Self { words: words.collect(), ..*self }
+    }
+
     /// Rows that are written by `fill(y, plane, rows)`, up to `at_once` from row y on.
     fn filled(
         [width, height]: [usize; 2],

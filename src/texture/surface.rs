@@ -1,6 +1,6 @@
 //! The texels of a material: colour, height and normals of one size, packed, with every mip level.
 
-use super::level::{FULL, Level, pack_normal};
+use super::level::{FULL, FULL_F32, Level, pack_normal};
 use super::rows::PackedTexel;
 use super::wrap::Wrap;
 use super::{ColorImage, HeightImage, NormalImage, pyramid, resample};
@@ -78,6 +78,23 @@ impl Surface {
             relief_depth: if is_flat { 0.0 } else { relief_depth },
             color_scale,
         })
+    }
+
+    /// The surface with one colour a mip level, to see in a frame which levels are read: every
+    /// texel of level `i` in `colors[i]`, and of levels beyond the last colour in that one. Heights
+    /// and normals stay. Colours are linear RGB from 0 to [`Self::color_scale`]; others are
+    /// clamped.
+    ///
+    /// [`Filter::Horizon`](crate::Filter::Horizon) measures on colours what levels lose in
+    /// occlusion, so levels whose colours are far apart make it read finer ones than the surface
+    /// itself would.
+    pub fn with_level_colors(&self, colors: &[[f32; 3]]) -> Self {
+        let packed = |c: f32| (c / self.color_scale * FULL_F32 + 0.5).clamp(0.0, FULL_F32) as u32;
+        let levels = self.levels.iter().enumerate().map(|(i, level)| match colors.get(i).or(colors.last()) {
+            Some(color) => level.in_color(color.map(packed)),
+            None => level.clone(),
+        });
+        Self { levels: levels.collect(), ..*self }
     }
 
     /// Mip levels, the finest first; the last holds one texel.

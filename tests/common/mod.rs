@@ -2,7 +2,7 @@
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
 use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Camera, Material, Mesh, Scene};
+use basrelief::{Camera, Ewa, Filter, Horizon, Material, Mesh, Scene, Visible};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -84,4 +84,33 @@ pub fn cobbles(size: u32, stones: u32) -> SurfaceMaps {
         [light, light * (0.8 + 0.2 * stone), light * 0.8]
     });
     SurfaceMaps { albedo: Some(albedo), height: Some(height), relief_depth: 0.06, ..Default::default() }
+}
+
+/// The filter with another limit of the anisotropy; as it is where it has none.
+pub fn with_limit(filter: Filter, max_anisotropy: f32) -> Filter {
+    match filter {
+        Filter::Ewa(ewa) => Filter::Ewa(Ewa { max_anisotropy, ..ewa }),
+        Filter::Visible(visible) => Filter::Visible(Visible { max_anisotropy, ..visible }),
+        Filter::Horizon(horizon) => Filter::Horizon(Horizon { max_anisotropy, ..horizon }),
+        Filter::Nearest | Filter::Bilinear | Filter::Trilinear(_) | Filter::Parallax(_) | Filter::Truth(_) => filter,
+    }
+}
+
+/// The filters that have a limit of the anisotropy.
+pub fn limited_filters() -> impl Iterator<Item = Filter> {
+    Filter::ALL.into_iter().filter(|filter| with_limit(*filter, 1.0) != *filter)
+}
+
+/// The filter with another budget of texels; as it is where it has none.
+pub fn with_budget(filter: Filter, texel_budget: u32) -> Filter {
+    match filter {
+        Filter::Ewa(ewa) => Filter::Ewa(Ewa { texel_budget, ..ewa }),
+        Filter::Visible(visible) => Filter::Visible(Visible { texel_budget, ..visible }),
+        Filter::Nearest
+        | Filter::Bilinear
+        | Filter::Trilinear(_)
+        | Filter::Horizon(_)
+        | Filter::Parallax(_)
+        | Filter::Truth(_) => filter,
+    }
 }

@@ -155,7 +155,7 @@ mod tests {
         assert_eq!(a.meshes[1].positions, b.meshes[1].positions);
         let heights = |scene: &Scene| {
             let surface = scene.materials[0].surface.as_ref().expect("textured");
-            (0..64).map(|i| surface.levels[0].height_at(i * 16, i * 7)).collect::<Vec<_>>()
+            (0..64).map(|i| surface.base().height_at(i * 16, i * 7)).collect::<Vec<_>>()
         };
         assert_eq!(heights(&a), heights(&b));
     }
