@@ -43,7 +43,7 @@
 //! let mut renderer = Renderer::new(scene::builtin(), settings)?;
 //! // Bytes of sRGB; a quarter of the memory that linear light takes. Draw into it as often as you like.
 //! let mut frame = Frame::<[u8; 4]>::default();
-//! renderer.render_into(&mut frame, &|| 0.0);
+//! renderer.render_into(&mut frame);
 //! let bytes: &[u8] = frame.pixels.as_flattened();
 //! # assert_eq!((bytes.len(), bytes[3]), (160 * 90 * 4, 255));
 //! # Ok::<(), basrelief::Error>(())
@@ -68,8 +68,7 @@
 //!
 //! [`load::load`] reads OBJ files, [`scene::builtin`] makes the scene of the README, [`Renderer`] keeps tables and buffers
 //! between frames, [`metrics::compare`] measures two pictures, [`golden::check`] is for tests that
-//! compare with an image in their repository, and [`seen_color`] is the filter alone, on derivatives of your own,
-//! as [`ewa_color`] is the elliptical weighted average of flat textures.
+//! compare with an image in their repository, and [`filter`] has the filters alone, on derivatives of your own.
 //!
 //! # The way of a pixel, one direction only
 //!
