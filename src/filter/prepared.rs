@@ -20,8 +20,8 @@ pub struct Prepared {
 /// What is made of the heights.
 #[derive(Debug)]
 struct Relief {
-    field: HeightField,
-    loss: OnceLock<LevelLoss>,
+    field: OnceLock<HeightField>,
+    loss: LevelLoss,
     /// The tables, if the surface has any, for so many MiB.
     far: Mutex<Option<(u32, Option<Arc<FarField>>)>>,
 }
@@ -31,7 +31,7 @@ impl Prepared {
     pub fn new(surface: impl Into<Arc<Surface>>) -> Self {
         let surface = surface.into();
         let relief = (surface.relief_depth() > 0.0).then(|| {
-            Arc::new(Relief { field: HeightField::new(&surface), loss: OnceLock::new(), far: Mutex::default() })
+            Arc::new(Relief { field: OnceLock::new(), loss: LevelLoss::new(&surface), far: Mutex::default() })
         });
         Self { surface, relief, has_far_field: true }
     }
@@ -48,9 +48,12 @@ impl Prepared {
 
     /// Makes now what a filter would make when it is first asked for a colour.
     pub fn make_ready(&self, filter: &Filter, is_lit: bool) {
+        self.field();
         match filter {
             Filter::Horizon(horizon) if !is_lit => {
-                self.level_loss();
+                if let Some(loss) = self.level_loss() {
+                    loss.measure_all(&self.surface);
+                }
                 if horizon.far_field {
                     self.far_field(horizon.far_field_mib);
                 }
@@ -85,17 +88,13 @@ impl Prepared {
 
     /// The heights; `None` where the surface is flat.
     pub fn field(&self) -> Option<&HeightField> {
-        self.relief.as_deref().map(|relief| &relief.field)
+        let relief = self.relief.as_deref()?;
+        Some(relief.field.get_or_init(|| HeightField::new(&self.surface)))
     }
 
     /// What levels lose in occlusion; `None` where the surface is flat.
     pub(super) fn level_loss(&self) -> Option<&LevelLoss> {
-        let loss = &self.relief.as_deref()?.loss;
-        // Made before the cell is asked: a cell that waits while its maker waits for other tasks would stop both.
-        if loss.get().is_none() {
-            loss.set(LevelLoss::new(&self.surface)).ok();
-        }
-        loss.get()
+        self.relief.as_deref().map(|relief| &relief.loss)
     }
 
     /// Tables of at most so many MiB; `None` for a surface that has none.
@@ -105,7 +104,8 @@ impl Prepared {
         if let Some((_, far)) = kept.filter(|(kept, _)| *kept == mib) {
             return far;
         }
-        // Made without the lock, for the reason above; whoever is last is kept, and all are the same.
+        // Made without the lock: whoever held it and waited for its tasks could be given one that asks for it. Whoever is last
+        // is kept, and all are the same.
         let made = FarField::new(&self.surface, mib).map(Arc::new);
         *far.lock().unwrap_or_else(PoisonError::into_inner) = Some((mib, made.clone()));
         made

@@ -17,7 +17,12 @@ const HAND_OVER_END: f32 = 4.0 / 3.0;
 
 impl FarField {
     /// How much of the colour of eight pixels the tables give, 0 to 1: all of it where a footprint is large.
-    pub(in crate::filter) fn shares(&self, prepared: &Prepared, pixels: &Footprints, max_anisotropy: f32) -> PixelLanes {
+    pub(in crate::filter) fn shares(
+        &self,
+        prepared: &Prepared,
+        pixels: &Footprints,
+        max_anisotropy: f32,
+    ) -> PixelLanes {
         let surface = prepared.surface();
         let texels = surface.levels()[self.first_level].texels_per_repeat();
         let across = Ellipses::new(pixels, texels, max_anisotropy).short.sqrt() * 2.0;
@@ -27,7 +32,8 @@ impl FarField {
         let [du, dv] = pixels.displacement.map(PixelLanes::to_array);
         let start = std::array::from_fn(|i| {
             // Where levels lose occlusion, sweeps do: the tables begin earlier.
-            let loss = prepared.level_loss().map_or(0.0, |loss| loss.share(surface.base().in_texels([du[i], dv[i]])));
+            let loss =
+                prepared.level_loss().map_or(0.0, |loss| loss.share(surface, surface.base().in_texels([du[i], dv[i]])));
             HAND_OVER[0] + (HAND_OVER[1] - HAND_OVER[0]) * loss
         });
         let start = PixelLanes::new(start);

@@ -204,14 +204,18 @@ impl<'a> Patches<'a> {
         if most > MOST_RATIO * least {
             return None;
         }
+        let across = 2.0 * (most * least).sqrt().sqrt();
+        let extent = SweepExtent { across, along: 2.0 * long.sqrt(), depth: du.abs().max(dv.abs()) };
+        let finer_by = |bias: usize| for_sweep(self.surface, &extent, (self.horizon.lines << bias) as f32);
+        let level = finer_by(0);
         let bias = match self.loss {
-            Some(loss) => loss.bias([du, dv]),
+            // Nothing is finer than the base level.
+            Some(loss) if level > 0 => loss.bias(self.surface, [du, dv]),
+            Some(_) => 0,
             // Under lights no table helps where a level loses what hides behind fine ridges: one level finer instead.
             None => usize::from(self.is_lit),
         };
-        let across = 2.0 * (most * least).sqrt().sqrt();
-        let extent = SweepExtent { across, along: 2.0 * long.sqrt(), depth: du.abs().max(dv.abs()) };
-        Some((for_sweep(self.surface, &extent, (self.horizon.lines << bias) as f32), means))
+        Some((if bias == 0 { level } else { finer_by(bias) }, means))
     }
 }
 
