@@ -18,21 +18,30 @@ use crate::texture::{FULL_F32, Rows, Surface, Wrap, wrap_index};
 /// Least length of a segment, in texels, that a place in it is divided by.
 const LEAST_SEGMENT: f32 = 1e-6;
 
-/// An image of what is seen: linear colours, 0 to 1 of the surface's scale, row by row along u.
+/// An image of what is seen, row by row along u.
 pub type SeenImage = Vec<[f32; 3]>;
+
+/// What is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seen {
+    /// Linear colours, 0 to 1 of the surface's scale.
+    Colors,
+    /// Heights, 0 to 1, three times each.
+    Heights,
+}
 
 /// The image of `surface` seen along `displacement` (base texels down to the deepest relief), swept on a mip level, in an
 /// image of `size`, which is at most the level's, addressed by the place on the mean depth plane.
-pub fn seen_image(surface: &Surface, level: usize, size: [usize; 2], [du, dv]: [f32; 2]) -> SeenImage {
+pub fn seen_image(surface: &Surface, seen: Seen, level: usize, size: [usize; 2], [du, dv]: [f32; 2]) -> SeenImage {
     let source = &surface.levels()[level];
     let [to, from] = [source, surface.base()].map(|level| level.size().map(|n| n as f32));
     let (du, dv) = (du * (to[0] / from[0]), dv * (to[1] / from[1]));
     let is_turned = du.abs() > dv.abs();
     let rows = source.rows(is_turned);
     let mut sweep = if is_turned {
-        Sweep::new(rows, [dv, du], surface.mean_depth(), [size[1], size[0]])
+        Sweep::new((rows, seen), [dv, du], surface.mean_depth(), [size[1], size[0]])
     } else {
-        Sweep::new(rows, [du, dv], surface.mean_depth(), size)
+        Sweep::new((rows, seen), [du, dv], surface.mean_depth(), size)
     };
     for first in (0..sweep.rows.width()).step_by(8) {
         sweep.lines(first);
@@ -53,6 +62,7 @@ pub fn square_difference(a: &[[f32; 3]], b: &[[f32; 3]]) -> f32 {
 /// A sweep over one whole level: rows along y, lines as lanes.
 struct Sweep<'a> {
     rows: &'a Rows,
+    seen: Seen,
     toward: f32,
     depth: f32,
     shear: f32,
@@ -60,7 +70,7 @@ struct Sweep<'a> {
     size: [usize; 2],
     /// Image texels per texel of the level.
     scale: [f32; 2],
-    /// Colour times length, and length, of what fell into each texel.
+    /// Values times length, and length, of what fell into each texel.
     sums: Vec<[f32; 4]>,
 }
 
@@ -68,16 +78,16 @@ struct Sweep<'a> {
 #[derive(Clone, Copy)]
 struct Row {
     place: TexelLanes,
-    color: [TexelLanes; 3],
+    values: [TexelLanes; 3],
 }
 
 impl<'a> Sweep<'a> {
-    fn new(rows: &'a Rows, [dx, dy]: [f32; 2], mean_depth: f32, size: [usize; 2]) -> Self {
+    fn new((rows, seen): (&'a Rows, Seen), [dx, dy]: [f32; 2], mean_depth: f32, size: [usize; 2]) -> Self {
         let shear = if dy == 0.0 { 0.0 } else { dx / dy };
         let scale = [size[0] as f32 / rows.width() as f32, size[1] as f32 / rows.height() as f32];
         let toward = if dy < 0.0 { -1.0 } else { 1.0 };
         let sums = vec![[0.0; 4]; size[0] * size[1]];
-        Self { rows, toward, depth: dy.abs(), shear, mean_depth, size, scale, sums }
+        Self { rows, seen, toward, depth: dy.abs(), shear, mean_depth, size, scale, sums }
     }
 
     /// Walks eight lines over one period of the pattern, after a walk that finds what hides its beginning.
@@ -106,7 +116,7 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Projected places and colours of the lines in the i-th row of the walk.
+    /// Projected places and values of the lines in the i-th row of the walk.
     fn row(&self, first: usize, i: i32) -> Row {
         let eta = i as f32 * self.toward;
         let words = self.rows.row(eta as i32);
@@ -119,11 +129,13 @@ impl<'a> Sweep<'a> {
             blend.mix([Rows::run(words, start), Rows::run(words, start + 1)])
         };
         let (red_green, blue_height) = (pick(0), pick(1));
-        let depth = TexelLanes::ONE - high_half(blue_height) * (1.0 / FULL_F32);
-        Row {
-            place: TexelLanes::splat(i as f32) - depth * self.depth,
-            color: [low_half(red_green), high_half(red_green), low_half(blue_height)],
-        }
+        let height = high_half(blue_height);
+        let depth = TexelLanes::ONE - height * (1.0 / FULL_F32);
+        let values = match self.seen {
+            Seen::Colors => [low_half(red_green), high_half(red_green), low_half(blue_height)],
+            Seen::Heights => [height; 3],
+        };
+        Row { place: TexelLanes::splat(i as f32) - depth * self.depth, values }
     }
 
     /// Adds the parts from `from` to `to` of the segments between two rows, where there is a record.
@@ -138,12 +150,12 @@ impl<'a> Sweep<'a> {
         for part in 0..num_parts {
             let middle = from + length * (part as f32 + 0.5);
             let at = ((middle - near.place) * inverse).fast_max(TexelLanes::ZERO).fast_min(TexelLanes::ONE);
-            let color = |i: usize| (near.color[i] + (far.color[i] - near.color[i]) * at) * length;
+            let value = |i: usize| (near.values[i] + (far.values[i] - near.values[i]) * at) * length;
             let eta = (middle + self.depth * self.mean_depth) * self.toward;
             // Texel centres lie at whole numbers.
             let x = ((line + eta * self.shear + 0.5) * self.scale[0]).floor().fast_trunc_int().to_array();
             let y = ((eta + 0.5) * self.scale[1]).floor().fast_trunc_int().to_array();
-            let sums = [color(0), color(1), color(2), length].map(TexelLanes::to_array);
+            let sums = [value(0), value(1), value(2), length].map(TexelLanes::to_array);
             let mut left = records;
             while left != 0 {
                 let lane = left.trailing_zeros() as usize;

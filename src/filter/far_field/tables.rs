@@ -2,7 +2,7 @@
 
 use super::encode::FarImage;
 use crate::relief::directions::{Lengths, NUM_LENGTHS, SLOPES, diamond_angle, pseudo_exp, pseudo_log};
-use crate::relief::seen::{seen_image, square_difference};
+use crate::relief::seen::{Seen, seen_image, square_difference};
 use crate::texture::{Surface, Wrap};
 use rayon::prelude::*;
 
@@ -62,7 +62,8 @@ impl FarField {
         let source = self.source_level(surface);
         let directions = (0..NUM_LENGTHS).flat_map(|i| (0..self.num_azimuths(i)).map(move |j| (i, j)));
         let directions: Vec<_> = directions.collect();
-        let one = |(i, j)| FarImage::new(size, seen_image(surface, source, size, self.displacement(i, j)));
+        let one =
+            |(i, j)| FarImage::new(size, seen_image(surface, Seen::Colors, source, size, self.displacement(i, j)));
         directions.into_par_iter().map(one).collect()
     }
 
@@ -71,7 +72,8 @@ impl FarField {
         let size = surface.levels()[self.first_level].size();
         let probes: Vec<_> = PROBED_LENGTHS.into_iter().flat_map(|i| PROBED_AZIMUTHS.map(|j| (i, j))).collect();
         let loss = |&(i, j): &(usize, usize)| {
-            let [exact, coarse] = [0, 1].map(|level| seen_image(surface, level, size, self.displacement(i, j)));
+            let [exact, coarse] =
+                [0, 1].map(|level| seen_image(surface, Seen::Colors, level, size, self.displacement(i, j)));
             square_difference(&exact, &coarse)
         };
         let greatest = probes.par_iter().map(loss).reduce(|| 0.0, f32::max);
