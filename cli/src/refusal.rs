@@ -66,7 +66,6 @@ fn with_options(text: String) -> String {
 pub(crate) fn option_of(field: &str) -> String {
     match field {
         "width" | "height" => "--size".into(),
-        "visibility" => "--visible".into(),
         "cull_back_faces" => "--cull".into(),
         "tile_size" => "--tile".into(),
         _ => format!("--{}", field.replace('_', "-")),

@@ -22,8 +22,9 @@
 //! Keys are the names of options, tables are the headings of the help. Files are named relative to the scene file. An option
 //! on the command line overrides the key.
 
+use crate::options::filter::FilterOptions;
 use crate::options::scene::{CameraOptions, LightOptions, LimitOptions, MapOptions, SceneOptions};
-use crate::options::settings::{FilterOptions, FrameOptions, SettingsOptions, check};
+use crate::options::settings::{FrameOptions, SettingsOptions};
 use crate::refusal::{Refusal, option_of};
 use basrelief::{Camera, Error, Settings};
 use serde::{Deserialize, Serialize};
@@ -125,7 +126,7 @@ impl SceneFile {
         let text = read_text(path)?;
         let mut file: Self = parse(path, &text)?;
         let (_, settings) = file.clone().options();
-        if let Err(Error::Setting { name, reason }) = check(&settings.unchecked(false)) {
+        if let Err(Error::Setting { name, reason }) = settings.check() {
             let key = option_of(name).trim_start_matches('-').to_owned();
             return Err(at(path, line_of_key(&text, &key), &format!("{key}: {reason}")));
         }
