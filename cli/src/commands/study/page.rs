@@ -33,7 +33,7 @@ struct Page {
 struct Row {
     number: usize,
     name: &'static str,
-    options: &'static str,
+    options: String,
     ms: String,
     psnr: String,
     ssim: String,
@@ -63,7 +63,7 @@ pub(crate) fn html(study: &Study) -> Result<String, Refusal> {
     let row = |(i, outcome): (usize, &Outcome)| Row {
         number: i + 1,
         name: outcome.trial.name,
-        options: outcome.trial.options,
+        options: outcome.trial.options.clone(),
         ms: number(outcome.ms, if outcome.ms < 100.0 { 1 } else { 0 }),
         psnr: if outcome.psnr.is_finite() { number(outcome.psnr, 1) } else { "equal".into() },
         ssim: number(outcome.ssim, 4),
