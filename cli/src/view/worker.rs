@@ -93,3 +93,45 @@ fn draw(renderer: &mut Renderer, camera: Camera, settings: Vec<Settings>) -> Res
     }
     Ok(drawn)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use basrelief::{Region, render, scene};
+
+    #[test]
+    fn one_renderer_draws_halves_by_two_filters_and_then_another_scene() {
+        let (answers, outbox) = channel();
+        let answer = move |answer| answers.send(answer).unwrap();
+        let worker = Worker::start(scene::builtin(), 2, answer).unwrap();
+        let half = |filter, x| {
+            let region = Some(Region { x, y: 0, width: 16, height: 18 });
+            Settings { width: 32, height: 18, region, filter, ..Settings::default() }
+        };
+        let settings = vec![half(Filter::default(), 0), half(Filter::Bilinear, 16)];
+        let mut other = scene::builtin();
+        other.background = [1.0, 0.0, 0.0, 1.0];
+        for scene in [scene::builtin(), other] {
+            let camera = scene.camera;
+            worker.wish(Wish::Scene(Box::new(scene.clone())));
+            // Once more with all tables made.
+            for _ in 0..2 {
+                worker.wish(Wish::Draw { camera, settings: settings.clone() });
+                let drawn = outbox.recv().unwrap().unwrap();
+                let expected = settings.iter().map(|half| render(scene.clone(), half.clone()).unwrap());
+                assert!(drawn.frames.into_iter().eq(expected));
+            }
+        }
+    }
+
+    #[test]
+    fn a_scene_that_cannot_be_drawn_is_answered_with_the_reason() {
+        let (answers, outbox) = channel();
+        let wrong = Scene { background: [f32::NAN; 4], ..scene::builtin() };
+        let worker = Worker::start(wrong, 1, move |answer: Answer| answers.send(answer).unwrap()).unwrap();
+        let camera = scene::builtin().camera;
+        worker.wish(Wish::Draw { camera, settings: vec![Settings::default()] });
+        let reason = outbox.recv().unwrap().err().unwrap();
+        assert!(reason.contains("background"), "{reason}");
+    }
+}
