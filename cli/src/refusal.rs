@@ -64,7 +64,6 @@ pub(crate) fn one_line(text: &str) -> String {
 pub(crate) fn option_of(field: &str) -> String {
     match field {
         "width" | "height" => "--size".into(),
-        "visibility" => "--visible".into(),
         "cull_back_faces" => "--cull".into(),
         "tile_size" => "--tile".into(),
         _ => format!("--{}", field.replace('_', "-")),

@@ -4,7 +4,7 @@ use basrelief::{SIMD_LEVEL, Settings, Stats};
 use serde::Serialize;
 use std::path::Path;
 
-use crate::options::choices::{FILTERS, word};
+use crate::options::choices::word;
 use crate::refusal::Refusal;
 
 /// One JSON object; of several pictures in a row where `--json` prints one a line. Times are in milliseconds; those of a frame belong to the frame of the middle time.
@@ -79,7 +79,7 @@ impl Report {
             version: env!("CARGO_PKG_VERSION"),
             width: settings.drawn().width,
             height: settings.drawn().height,
-            filter: word(FILTERS, &settings.filter),
+            filter: word(&settings.filter),
             file: None,
             frame: None,
         }

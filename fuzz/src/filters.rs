@@ -1,4 +1,4 @@
-//! A small texture, a pixel and settings: what holds of every filter.
+//! A small texture, a pixel and a filter: what holds of every filter.
 
 use crate::input::Input;
 use crate::{check, hold};
@@ -7,23 +7,22 @@ use basrelief::invariants::{
     march_finds_first_hit, mirrored, records_are_visible, same_for_same_ellipse, same_when_scaled, shifted, turned,
     within_texels, work_is_bounded,
 };
-use basrelief::{Filter, Settings, invariants};
+use basrelief::{Ewa, Filter, Horizon, invariants};
 
 /// Any derivatives: the ellipse is finite and bounded, the colour finite and within the texels.
 pub fn footprint_ellipse(bytes: &[u8]) {
     check(bytes, |input: Input| {
-        let (surface, pixel, settings) = (input.surface(), input.pixel(), input.settings());
-        let texels_per_repeat = surface.texels_per_repeat(0);
-        hold(ellipse_is_bounded(&pixel, texels_per_repeat, settings.max_anisotropy));
-        hold(anisotropy_limit_only_limits(&surface, &pixel, &settings));
-        hold(within_texels(&surface, &pixel, &settings));
+        let (surface, pixel, limit) = (input.surface(), input.pixel(), input.max_anisotropy());
+        hold(ellipse_is_bounded(&pixel, surface.base().texels_per_repeat(), limit));
+        hold(anisotropy_limit_only_limits(&surface, &pixel, limit, |limit| input.filter_limited(limit)));
+        hold(within_texels(&surface, &pixel, &input.filter()));
     });
 }
 
 /// The paper's sets of texels: T, `T_vis`, two-ended rows, trace and resolve.
 pub fn visible_sets(bytes: &[u8]) {
     check(bytes, |input: Input| {
-        hold(invariants::visible_sets(&input.surface(), &input.pixel(), &input.settings()));
+        hold(invariants::visible_sets(&input.surface(), &input.pixel(), &input.visible()));
     });
 }
 
@@ -31,11 +30,10 @@ pub fn visible_sets(bytes: &[u8]) {
 /// free.
 pub fn horizon(bytes: &[u8]) {
     check(bytes, |input: Input| {
-        let (surface, pixel) = (input.surface(), input.pixel());
-        let settings = Settings { filter: Filter::Horizon, ..input.settings() };
-        hold(within_texels(&surface, &pixel, &settings));
-        hold(records_are_visible(&surface, &pixel, &settings));
-        hold(horizon_weights(&input.maps(), &pixel, &settings));
+        let (surface, pixel, horizon) = (input.surface(), input.pixel(), input.horizon());
+        hold(within_texels(&surface, &pixel, &Filter::Horizon(horizon)));
+        hold(records_are_visible(&surface, &pixel, horizon.max_anisotropy));
+        hold(horizon_weights(&input.maps(), &pixel, &horizon));
     });
 }
 
@@ -49,21 +47,24 @@ pub fn march(bytes: &[u8]) {
 pub fn symmetry(bytes: &[u8]) {
     check(bytes, |(input, height, by): (Input, u16, [u8; 2])| {
         let (maps, surface) = (input.maps(), input.surface());
-        let (pixel, settings) = (input.pixel(), input.settings());
-        hold(same_for_same_ellipse(&surface, &pixel, &settings));
-        hold(flat_relief_hides_nothing(&maps, height, &pixel, &settings));
-        hold(work_is_bounded(&surface, &pixel, &settings));
-        hold(linear_in_texture(&maps, &input.inverted(), &pixel, &settings));
+        let (pixel, filter, visible) = (input.pixel(), input.filter(), input.visible());
+        hold(same_for_same_ellipse(&surface, &pixel, &filter));
+        hold(flat_relief_hides_nothing(&maps, height, &pixel, &visible));
+        hold(work_is_bounded(&surface, &pixel, &visible, &input.ewa()));
+        hold(linear_in_texture(&maps, &input.inverted(), &pixel, &filter));
         // Rounding decides which texels on the edge of an ellipse count, with a weight of exp(-2)
         // of the middle's; which of two equal heights hides the other may change a pixel by more.
         let (maps, pixel) = (input.even_maps(), input.near_pixel());
-        let near = Settings { texel_budget: 0, lines: 64, ..settings };
-        if matches!(near.filter, Filter::Bilinear | Filter::Ewa) {
-            let tolerance = if near.filter == Filter::Bilinear { 2e-5 } else { 0.3 };
+        let near = match filter {
+            Filter::Bilinear => Some((filter, 2e-5)),
+            Filter::Ewa(ewa) => Some((Filter::Ewa(Ewa { texel_budget: 0, ..ewa }), 0.3)),
+            _ => None,
+        };
+        if let Some((near, tolerance)) = near {
             hold(shifted(&maps, &pixel, &near, by.map(u32::from), tolerance));
             hold(turned(&maps, &pixel, &near, tolerance));
             hold(mirrored(&maps, &pixel, &near, tolerance));
         }
-        hold(same_when_scaled(&maps, &pixel, &near, 0.3));
+        hold(same_when_scaled(&maps, &pixel, &Horizon { lines: 64, ..input.horizon() }, 0.3));
     });
 }

@@ -4,7 +4,7 @@ use crate::input::{Input, Number, floor};
 use crate::{check, hold};
 use arbitrary::Arbitrary;
 use basrelief::invariants::{fan_is_hit_once, frame_is_finite};
-use basrelief::{Camera, Filter, Light, Lighting, Material, Mesh, Scene, Settings};
+use basrelief::{Camera, Filter, Light, Lighting, Material, Mesh, Rays, Scene, Settings};
 use basrelief_cli::{Cli, Ending};
 use glam::{Vec2, Vec3};
 use std::ffi::OsString;
@@ -41,18 +41,18 @@ pub fn render(bytes: &[u8]) {
             lights: vec![Light::Point { position: vector(light), intensity: Vec3::ONE }],
             ..Scene::default()
         };
-        let settings = texture.settings();
-        let filters = [settings.filter, Filter::Parallax, Filter::Truth, Filter::Horizon];
+        let rays = Rays { samples: 2 };
+        let [parallax, truth] = [Filter::Parallax(rays), Filter::Truth(rays)];
+        let filters = [texture.filter(), parallax, truth, Filter::Horizon(texture.horizon())];
         hold(frame_is_finite(
             scene,
             Settings {
                 width: 24,
                 height: 16,
-                samples: 2,
                 filter: filters[usize::from(options >> 4 & 3)],
                 lighting: if options & 1 == 0 { Lighting::Unlit } else { Lighting::Lit },
                 msaa: [1, 4, 8, 4][usize::from(options >> 1 & 3)],
-                ..settings
+                ..Settings::default()
             },
         ));
     });
@@ -112,10 +112,11 @@ pub fn command_line(bytes: &[u8]) {
             Err(Ending::Help(help)) => return assert!(!help.to_string().is_empty()),
         };
         let mut scene = floor();
-        let Ok(Some(settings)) = cli.picture(&mut scene) else { return };
+        let Ok(Some(mut settings)) = cli.picture(&mut scene) else { return };
+        if let Filter::Parallax(rays) | Filter::Truth(rays) = &mut settings.filter {
+            rays.samples = rays.samples.min(4);
+        }
         let (width, height) = (settings.width.min(16), settings.height.min(12));
-        let samples = settings.samples.min(4);
-        let small = Settings { width, height, samples, region: None, ..settings };
-        hold(frame_is_finite(scene, small));
+        hold(frame_is_finite(scene, Settings { width, height, region: None, ..settings }));
     });
 }

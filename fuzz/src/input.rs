@@ -1,9 +1,9 @@
-//! What the targets read from a fuzzer's bytes: a small texture, a pixel, settings.
+//! What the targets read from a fuzzer's bytes: a small texture, a pixel, a filter.
 
 use arbitrary::Arbitrary;
-use basrelief::invariants::Pixel;
+use basrelief::invariants::Footprint;
 use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Camera, Filter, Light, Material, Mesh, Scene, Settings};
+use basrelief::{Camera, Ewa, Filter, Horizon, Light, Material, Mesh, Scene, Visible};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ impl Number {
     }
 }
 
-/// A texture, a pixel and settings.
+/// A texture, a pixel and a filter with its options.
 #[derive(Arbitrary, Clone, Debug)]
 pub(crate) struct Input {
     size: [u8; 2],
@@ -70,32 +70,61 @@ impl Input {
     }
 
     /// The pixel at a 1024th of a repeat within one of the middle, and with derivatives of up to half a repeat.
-    pub(crate) fn near_pixel(&self) -> Pixel {
-        let [center, dx, dy, view] = self.footprint.map(|pair| pair.map(Number::get));
+    pub(crate) fn near_pixel(&self) -> Footprint {
+        let [center, dx, dy, displacement] = self.footprint.map(|pair| pair.map(Number::get));
         let within = |pair: [f32; 2], most: f32| pair.map(|c| if c.abs() <= most { c } else { most });
         let center = within(center, 1.0).map(|c| (c * 1024.0).round() / 1024.0);
-        Pixel::new(center, within(dx, 0.5), within(dy, 0.5), within(view, 0.6))
+        Footprint::new(center, within(dx, 0.5), within(dy, 0.5), within(displacement, 0.6)).bounded()
     }
 
     pub(crate) fn surface(&self) -> Surface {
         Surface::new(self.maps()).expect("valid maps")
     }
 
-    pub(crate) fn pixel(&self) -> Pixel {
-        let [center, dx, dy, view] = self.footprint.map(|pair| pair.map(Number::get));
-        Pixel::new(center, dx, dy, view)
+    pub(crate) fn pixel(&self) -> Footprint {
+        let [center, dx, dy, displacement] = self.footprint.map(|pair| pair.map(Number::get));
+        Footprint::new(center, dx, dy, displacement).bounded()
     }
 
-    pub(crate) fn settings(&self) -> Settings {
-        const FILTERS: [Filter; 6] =
-            [Filter::Nearest, Filter::Bilinear, Filter::Trilinear, Filter::Ewa, Filter::Visible, Filter::Horizon];
-        Settings {
-            filter: FILTERS[usize::from(self.filter % 6)],
-            texel_budget: 1 + u32::from(self.budget),
-            lines: 2 + u32::from(self.lines % 63),
-            max_anisotropy: 1.0 + f32::from(self.anisotropy) / 64.0,
-            far_field: false,
-            ..Settings::default()
+    pub(crate) fn max_anisotropy(&self) -> f32 {
+        1.0 + f32::from(self.anisotropy) / 64.0
+    }
+
+    fn texel_budget(&self) -> u32 {
+        1 + u32::from(self.budget)
+    }
+
+    pub(crate) fn ewa(&self) -> Ewa {
+        let (texel_budget, max_anisotropy) = (self.texel_budget(), self.max_anisotropy());
+        Ewa { texel_budget, max_anisotropy, ..Ewa::default() }
+    }
+
+    pub(crate) fn visible(&self) -> Visible {
+        let (texel_budget, max_anisotropy) = (self.texel_budget(), self.max_anisotropy());
+        Visible { texel_budget, max_anisotropy, ..Visible::default() }
+    }
+
+    /// The sweep alone: tables are an estimate of it.
+    pub(crate) fn horizon(&self) -> Horizon {
+        let (lines, max_anisotropy) = (2 + u32::from(self.lines % 63), self.max_anisotropy());
+        Horizon { lines, max_anisotropy, far_field: false, ..Horizon::default() }
+    }
+
+    /// Any filter that takes the texels of a footprint, with the options of the input.
+    pub(crate) fn filter(&self) -> Filter {
+        self.filter_limited(self.max_anisotropy())
+    }
+
+    /// [`filter`](Self::filter) with another greatest anisotropy, if it has one.
+    pub(crate) fn filter_limited(&self, max_anisotropy: f32) -> Filter {
+        let has_footprint = |filter: &Filter| !matches!(filter, Filter::Parallax(_) | Filter::Truth(_));
+        let filters: Vec<Filter> = Filter::ALL.into_iter().filter(has_footprint).collect();
+        let filter = filters[usize::from(self.filter) % filters.len()];
+        match filter {
+            Filter::Ewa(_) => Filter::Ewa(Ewa { max_anisotropy, ..self.ewa() }),
+            Filter::Visible(_) => Filter::Visible(Visible { max_anisotropy, ..self.visible() }),
+            Filter::Horizon(_) => Filter::Horizon(Horizon { max_anisotropy, ..self.horizon() }),
+            as_it_is => as_it_is,
         }
     }
 }

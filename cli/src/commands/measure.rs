@@ -11,7 +11,10 @@ use std::process::ExitCode;
 
 /// Draws the numbers of a frame.
 pub(crate) fn run(options: &RenderOptions, view: View) -> Result<ExitCode, Refusal> {
-    let settings = options.settings.settings(false)?;
+    let mut settings = options.settings.settings(false)?;
+    if view == View::Visible {
+        settings.filter = options.settings.filter.inspected(settings.filter);
+    }
     let sequence = options.frames.sequence(options.output.as_deref())?;
     let is_more = options.stats.is_some() || options.repeat.is_some() || options.json || options.save_scene.is_some();
     if is_more || sequence.is_numbered() || settings.region.is_some() {

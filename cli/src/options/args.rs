@@ -135,6 +135,7 @@ fn usage_line(error: &clap::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use basrelief::{Filter, Horizon};
 
     #[test]
     fn command_line_is_consistent() {
@@ -151,15 +152,16 @@ mod tests {
 
     #[test]
     fn the_last_of_an_option_counts() {
-        let line = "x -q --size 8x8 --sun 0,1,0 -f ewa --cull --wrap clamp -q --size 16x9 -f visible --cull=off \
+        let line = "x -q --size 8x8 --sun 0,1,0 -f ewa --cull --wrap clamp -q --size 16x9 -f horizon --cull=off \
                     --sun 1,0,0 --wrap mirror --lines 4 --lines 6 --point-light 1,2,3";
         for start in ["x model.obj", "x render model.obj"] {
             let line = line.replacen('x', start, 1);
             let cli = Cli::read(line.split_whitespace().map(Into::into)).ok().unwrap();
             let mut scene = Scene::default();
             let settings = cli.picture(&mut scene).unwrap().unwrap();
-            assert_eq!((settings.width, settings.height, settings.lines), (16, 9, 6));
-            assert!(settings.filter == basrelief::Filter::Visible && !settings.cull_back_faces);
+            assert_eq!((settings.width, settings.height), (16, 9));
+            let horizon = Horizon { lines: 6, ..Horizon::default() };
+            assert!(settings.filter == Filter::Horizon(horizon) && !settings.cull_back_faces);
             // Lights add up.
             assert_eq!(scene.lights.len(), 3);
         }

@@ -11,16 +11,31 @@ use serde::{Deserialize, Deserializer, Serializer};
 /// A word, what it stands for, and its help.
 pub(crate) type Choice<T> = (&'static str, T, &'static str);
 
-pub(crate) const FILTERS: &[Choice<Filter>] = &[
-    ("nearest", Filter::Nearest, "One texel; flickers and shows stairs"),
-    ("bilinear", Filter::Bilinear, "Four texels; flickers in the distance"),
-    ("trilinear", Filter::Trilinear, "Mip levels; blurs at grazing angles"),
-    ("ewa", Filter::Ewa, "All texels of the pixel's ellipse, hidden ones too"),
-    ("visible", Filter::Visible, "The texels of the ellipse that the relief does not hide"),
-    ("horizon", Filter::Horizon, "Visible texels by their visible length, in one sweep"),
-    ("parallax", Filter::Parallax, "Common practice: 32 steps, then 16x anisotropy; --samples rays a pixel"),
-    ("truth", Filter::Truth, "Supersampled: --samples exact rays a pixel; slow"),
-];
+/// A filter's word and help: one line for each.
+const fn described(filter: &Filter) -> (&'static str, &'static str) {
+    match filter {
+        Filter::Nearest => ("nearest", "One texel; flickers and shows stairs"),
+        Filter::Bilinear => ("bilinear", "Four texels; flickers in the distance"),
+        Filter::Trilinear(_) => ("trilinear", "Mip levels; blurs at grazing angles"),
+        Filter::Ewa(_) => ("ewa", "All texels of the pixel's ellipse, hidden ones too"),
+        Filter::Visible(_) => ("visible", "The texels of the ellipse that the relief does not hide"),
+        Filter::Horizon(_) => ("horizon", "Visible texels by their visible length, in one sweep"),
+        Filter::Parallax(_) => ("parallax", "Common practice: 32 steps, then 16x anisotropy; --samples rays a pixel"),
+        Filter::Truth(_) => ("truth", "Supersampled: --samples exact rays a pixel; slow"),
+    }
+}
+
+/// All filters, each with its default options: other options do not make it another choice.
+pub(crate) const FILTERS: &[Choice<Filter>] = &{
+    let mut choices = [("", Filter::Nearest, ""); Filter::ALL.len()];
+    let mut i = 0;
+    while i < choices.len() {
+        let (word, help) = described(&Filter::ALL[i]);
+        choices[i] = (word, Filter::ALL[i], help);
+        i += 1;
+    }
+    choices
+};
 
 pub(crate) const VISIBILITIES: &[Choice<Visibility>] = &[
     ("exact", Visibility::Exact, "A ray from each texel to the eye"),
@@ -65,6 +80,20 @@ pub(crate) const ON_OFF: &[Choice<bool>] = &[("on", true, ""), ("off", false, ""
 /// What is one of a few words wherever it is given.
 pub(crate) trait Words: Copy + PartialEq + Send + Sync + 'static {
     const CHOICES: &'static [Choice<Self>];
+
+    /// Whether one word stands for both.
+    fn is_same_choice(&self, other: &Self) -> bool {
+        self == other
+    }
+}
+
+impl Words for Filter {
+    const CHOICES: &'static [Choice<Self>] = FILTERS;
+
+    /// Whatever their options are.
+    fn is_same_choice(&self, other: &Self) -> bool {
+        described(self).0 == described(other).0
+    }
 }
 
 /// Names the words of each type.
@@ -73,7 +102,6 @@ macro_rules! words {
 }
 
 words! {
-    Filter: FILTERS;
     Visibility: VISIBILITIES;
     Derivatives: DERIVATIVES;
     Formulas: FORMULAS;
@@ -86,7 +114,7 @@ words! {
 /// Writes the word of a value, for `serde(with = "choices")`.
 pub(crate) fn serialize<T: Words, S: Serializer>(value: &Option<T>, to: S) -> Result<S::Ok, S::Error> {
     match value {
-        Some(value) => to.serialize_some(word(T::CHOICES, value)),
+        Some(value) => to.serialize_some(word(value)),
         None => to.serialize_none(),
     }
 }
@@ -115,21 +143,32 @@ where
 }
 
 /// The word that stands for `value`.
-pub(crate) fn word<T: PartialEq>(choices: &'static [Choice<T>], value: &T) -> &'static str {
-    choices.iter().find(|(_, known, _)| known == value).map_or("?", |&(word, ..)| word)
+pub(crate) fn word<T: Words>(value: &T) -> &'static str {
+    T::CHOICES.iter().find(|(_, known, _)| known.is_same_choice(value)).map_or("?", |&(word, ..)| word)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use basrelief::Settings;
+    use basrelief::{Ewa, Horizon, Settings, Visible};
 
     #[test]
     fn each_default_has_a_word() {
         let settings = Settings::default();
-        assert_eq!(word(FILTERS, &settings.filter), "horizon");
-        assert_eq!(word(VISIBILITIES, &settings.visibility), "exact");
-        assert_eq!(word(MSAA, &settings.msaa), "4");
-        assert_eq!(word(WRAPS, &Wrap::default()), "repeat");
+        assert_eq!(word(&settings.filter), "horizon");
+        assert_eq!(word(&Visible::default().visibility), "exact");
+        assert_eq!(word(&settings.lighting), "unlit");
+        assert_eq!(word(&Wrap::default()), "repeat");
+        assert!(MSAA.iter().any(|(_, num, _)| *num == settings.msaa));
+    }
+
+    #[test]
+    fn a_filter_keeps_its_word_with_other_options() {
+        assert_eq!(word(&Filter::Ewa(Ewa { cut: 1.5, ..Ewa::default() })), "ewa");
+        assert_eq!(word(&Filter::Horizon(Horizon { lines: 4, ..Horizon::default() })), "horizon");
+        let words = Filter::ALL.each_ref().map(word);
+        assert!(FILTERS.iter().map(|(word, ..)| *word).eq(words), "{words:?}");
+        let num = words.iter().collect::<std::collections::HashSet<_>>().len();
+        assert_eq!(num, words.len(), "no word stands for two: {words:?}");
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod args;
 pub(crate) mod choices;
 pub(crate) mod compare;
+pub(crate) mod filter;
 pub(crate) mod frames;
 pub(crate) mod inspect;
 pub(crate) mod join;

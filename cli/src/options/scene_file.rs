@@ -24,8 +24,9 @@
 //! on the command line overrides the key.
 
 use crate::options::file_values;
+use crate::options::filter::FilterOptions;
 use crate::options::scene::{CameraOptions, LightOptions, LimitOptions, MapOptions, SceneOptions};
-use crate::options::settings::{FilterOptions, FrameOptions, SettingsOptions, check};
+use crate::options::settings::{FrameOptions, SettingsOptions};
 use crate::refusal::{Refusal, option_of};
 use basrelief::{Camera, Error, Settings};
 use serde::{Deserialize, Serialize};
@@ -132,7 +133,7 @@ impl SceneFile {
         let text = read_text(path)?;
         let mut file: Self = parse(path, &text)?;
         let (_, settings) = file.clone().options();
-        if let Err(Error::Setting { name, reason }) = check(&settings.unchecked(false)) {
+        if let Err(Error::Setting { name, reason }) = settings.check() {
             let key = option_of(name).trim_start_matches('-').to_owned();
             return Err(at(path, line_of_key(&text, &key), &format!("{key}: {reason}")));
         }

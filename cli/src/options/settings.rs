@@ -4,9 +4,9 @@
 
 use crate::options::choices::{self, ON_OFF, one_of};
 use crate::options::file_values::Spelt;
-use crate::options::values;
+use crate::options::filter::FilterOptions;
 use crate::refusal::Refusal;
-use basrelief::{Derivatives, Filter, Formulas, Lighting, Region, Settings, Visibility};
+use basrelief::{Filter, Lighting, Region, Settings};
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
@@ -44,65 +44,6 @@ pub(crate) struct FrameOptions {
     lighting: Option<Lighting>,
 }
 
-#[derive(Args, Clone, Debug, Default, Serialize, Deserialize)]
-#[command(next_help_heading = "Texture filter")]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct FilterOptions {
-    /// Which texels make up a pixel's colour [default: horizon]
-    #[arg(short, long, value_parser = one_of(choices::FILTERS))]
-    #[serde(with = "choices")]
-    filter: Option<Filter>,
-    /// How --filter visible finds the hidden texels [default: exact]
-    #[arg(long, value_name = "HOW", value_parser = one_of(choices::VISIBILITIES))]
-    #[serde(with = "choices")]
-    visible: Option<Visibility>,
-    /// Whether the relief is traced; off draws flat polygons [default: on]
-    #[arg(long, value_name = "on|off", hide_possible_values = true, value_parser = one_of(ON_OFF))]
-    parallax: Option<bool>,
-    /// Which texture coordinates a pixel's ellipse comes from [default: relief]
-    #[arg(long, value_name = "OF", value_parser = one_of(choices::DERIVATIVES))]
-    #[serde(with = "choices")]
-    derivatives: Option<Derivatives>,
-    /// Which reading of the paper's formulas to use [default: meant]
-    #[arg(long, value_name = "AS", value_parser = one_of(choices::FORMULAS))]
-    #[serde(with = "choices")]
-    formulas: Option<Formulas>,
-    /// Choose the mip level so that an ellipse holds at most N texels; 0: always the full texture, as in the paper
-    /// [default: 256]
-    #[arg(long, value_name = "N")]
-    texel_budget: Option<u32>,
-    /// For --filter ewa: where the Gaussian is cut, in pixels, 1 to 1.5; 1 is the paper's ellipse [default: 1]
-    #[arg(long, value_name = "R", value_parser = values::number, allow_hyphen_values = true)]
-    cut: Option<f32>,
-    /// For --filter ewa: added to A and C of formula (1) for the texels' own kernel, 0.25 to 1; 2/3 is bilinear
-    /// interpolation, 1 Heckbert's [default: 0.6666667]
-    #[arg(long, value_name = "S", value_parser = values::number, allow_hyphen_values = true)]
-    texel_kernel: Option<f32>,
-    /// Whether --filter ewa takes every texel of an ellipse, and not only those next to its longer axis, which is several
-    /// times as fast; --cut and --texel-kernel are for every texel [default: off]
-    #[arg(long, value_name = "on|off", hide_possible_values = true, value_parser = one_of(ON_OFF))]
-    every_texel: Option<bool>,
-    /// Longest ellipse, as the ratio of its axes, 1 to 1e6; longer ones are widened [default: 64]
-    #[arg(long, value_name = "N", value_parser = values::number, allow_hyphen_values = true)]
-    max_anisotropy: Option<f32>,
-    /// For --filter visible: a derivative of formula (3) this many times as long as that of (2) is a jump of the relief,
-    /// and (2) is taken; 1 to 1000000, or 0 for never, as in the paper [default: 4]
-    #[arg(long, value_name = "N", value_parser = values::number, allow_hyphen_values = true)]
-    max_stretch: Option<f32>,
-    /// Rays a pixel of --filter truth and parallax, 1 to 65536 [default: 64]
-    #[arg(long, value_name = "N")]
-    samples: Option<u32>,
-    /// Most lines that --filter horizon sweeps through a pixel's ellipse, 2 to 64; more is finer and slower [default: 10]
-    #[arg(long, value_name = "N")]
-    lines: Option<u32>,
-    /// Whether --filter horizon keeps tables for distant surfaces [default: on]
-    #[arg(long, value_name = "on|off", hide_possible_values = true, value_parser = one_of(ON_OFF))]
-    far_field: Option<bool>,
-    /// Most memory of those tables for each material in MiB, 1 to 4096 [default: 32]
-    #[arg(long, value_name = "N")]
-    far_field_mib: Option<u32>,
-}
-
 impl SettingsOptions {
     /// Whether a size is given.
     pub(crate) fn has_size(&self) -> bool {
@@ -111,13 +52,23 @@ impl SettingsOptions {
 
     /// The settings; `has_lights` says whether the options name a light.
     pub(crate) fn settings(&self, has_lights: bool) -> Result<Settings, Refusal> {
-        let settings = self.unchecked(has_lights);
-        check(&settings)?;
-        Ok(settings)
+        self.check()?;
+        Ok(self.unchecked(has_lights))
+    }
+
+    /// Checks all but the number of pixels: a picture may be larger than a frame, and is then drawn
+    /// part by part. An option of a filter must be within its range whatever filter is chosen.
+    pub(crate) fn check(&self) -> basrelief::Result<()> {
+        let settings = self.unchecked(false);
+        let Region { x, y, .. } = settings.drawn();
+        let is_within = settings.drawn().is_within(settings.width, settings.height);
+        let pixel = Region { x, y, width: 1, height: 1 };
+        Settings { region: if is_within { Some(pixel) } else { settings.region }, ..settings }.validate()?;
+        Filter::ALL.iter().try_for_each(|filter| self.filter.apply(*filter).validate())
     }
 
     /// The settings, whose numbers may be out of their ranges.
-    pub(crate) fn unchecked(&self, has_lights: bool) -> Settings {
+    fn unchecked(&self, has_lights: bool) -> Settings {
         let Self { frame, filter } = self;
         let default = Settings::default();
         let [width, height] = frame.size.as_ref().map_or([default.width, default.height], |size| size.value);
@@ -125,21 +76,8 @@ impl SettingsOptions {
             width,
             height,
             region: frame.region.as_ref().map(|region| region.value),
-            filter: filter.filter.unwrap_or(default.filter),
-            visibility: filter.visible.unwrap_or(default.visibility),
+            filter: filter.chosen(),
             parallax: filter.parallax.unwrap_or(default.parallax),
-            derivatives: filter.derivatives.unwrap_or(default.derivatives),
-            formulas: filter.formulas.unwrap_or(default.formulas),
-            texel_budget: filter.texel_budget.unwrap_or(default.texel_budget),
-            cut: filter.cut.unwrap_or(default.cut),
-            texel_kernel: filter.texel_kernel.unwrap_or(default.texel_kernel),
-            every_texel: filter.every_texel.unwrap_or(default.every_texel),
-            max_anisotropy: filter.max_anisotropy.unwrap_or(default.max_anisotropy),
-            max_stretch: filter.max_stretch.unwrap_or(default.max_stretch),
-            samples: filter.samples.unwrap_or(default.samples),
-            lines: filter.lines.unwrap_or(default.lines),
-            far_field: filter.far_field.unwrap_or(default.far_field),
-            far_field_mib: filter.far_field_mib.unwrap_or(default.far_field_mib),
             lighting: frame.lighting.unwrap_or(if has_lights { Lighting::Lit } else { Lighting::Unlit }),
             cull_back_faces: frame.cull.unwrap_or(default.cull_back_faces),
             msaa: frame.msaa.unwrap_or(default.msaa),
@@ -161,38 +99,16 @@ impl From<&Settings> for SettingsOptions {
             tile: Some(settings.tile_size),
             lighting: Some(settings.lighting),
         };
-        let filter = FilterOptions {
-            filter: Some(settings.filter),
-            visible: Some(settings.visibility),
-            parallax: Some(settings.parallax),
-            derivatives: Some(settings.derivatives),
-            formulas: Some(settings.formulas),
-            texel_budget: Some(settings.texel_budget),
-            cut: Some(settings.cut),
-            texel_kernel: Some(settings.texel_kernel),
-            every_texel: Some(settings.every_texel),
-            max_anisotropy: Some(settings.max_anisotropy),
-            max_stretch: Some(settings.max_stretch),
-            samples: Some(settings.samples),
-            lines: Some(settings.lines),
-            far_field: Some(settings.far_field),
-            far_field_mib: Some(settings.far_field_mib),
-        };
+        let mut filter = FilterOptions::from(settings.filter);
+        filter.parallax = Some(settings.parallax);
         Self { frame, filter }
     }
-}
-
-/// Checks all but the number of pixels: a picture may be larger than a frame, and is then drawn part by part.
-pub(crate) fn check(settings: &Settings) -> basrelief::Result<()> {
-    let Region { x, y, .. } = settings.drawn();
-    let is_within = settings.drawn().is_within(settings.width, settings.height);
-    let pixel = Region { x, y, width: 1, height: 1 };
-    Settings { region: if is_within { Some(pixel) } else { settings.region }, ..settings.clone() }.validate()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use basrelief::{Derivatives, Ewa, Formulas, Horizon, Rays, Trilinear, Visibility, Visible};
     use clap::Parser;
 
     #[derive(Parser)]
@@ -201,9 +117,13 @@ mod tests {
         options: SettingsOptions,
     }
 
-    fn parse(line: &str) -> Result<Settings, Refusal> {
+    fn options(line: &str) -> Result<SettingsOptions, Refusal> {
         let only = Only::try_parse_from(std::iter::once("x").chain(line.split_whitespace()));
-        only.map_err(|e| e.to_string())?.options.settings(false)
+        Ok(only.map_err(|e| e.to_string())?.options)
+    }
+
+    fn parse(line: &str) -> Result<Settings, Refusal> {
+        options(line)?.settings(false)
     }
 
     #[test]
@@ -224,47 +144,68 @@ mod tests {
             }
         }
         assert_eq!(line.len(), 18, "{line:?}");
-        assert_eq!(parse(&line.join(" ")).unwrap(), Settings::default());
+        let options = options(&line.join(" ")).unwrap();
+        assert_eq!(options.settings(false).unwrap(), Settings::default());
+        assert_eq!(Filter::ALL.map(|filter| options.filter.apply(filter)), Filter::ALL);
     }
+
+    /// Every option of a filter, none at its default.
+    const OF_FILTERS: &str = "--visible two-ended --derivatives flat --formulas printed \
+                              --texel-budget 0 --cut 1.25 --texel-kernel 0.5 --every-texel on \
+                              --max-anisotropy 8 --max-stretch 3 --samples 5 --lines 6 \
+                              --far-field off --far-field-mib 7";
 
     #[test]
     fn settings_become_options_and_come_back() {
-        let region = Some(Region { x: 1, y: 2, width: 3, height: 4 });
-        let settings = Settings { width: 64, region, samples: 5, cull_back_faces: true, ..Settings::default() };
-        assert_eq!(SettingsOptions::from(&settings).settings(true).unwrap(), settings);
+        let others = options(OF_FILTERS).unwrap().filter;
+        for filter in Filter::ALL.into_iter().flat_map(|filter| [filter, others.apply(filter)]) {
+            let region = Some(Region { x: 1, y: 2, width: 3, height: 4 });
+            let settings = Settings { width: 64, region, filter, cull_back_faces: true, ..Settings::default() };
+            assert_eq!(SettingsOptions::from(&settings).settings(true).unwrap(), settings);
+        }
     }
 
     #[test]
     fn each_option_sets_its_field() {
-        let line = "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --lighting lit --filter horizon \
-                    --visible two-ended --parallax off --derivatives flat --formulas printed --texel-budget 0 \
-                    --cut 1.25 --texel-kernel 0.5 --every-texel on --max-anisotropy 8 --max-stretch 3 \
-                    --samples 5 --lines 6 --far-field off --far-field-mib 7";
+        let line =
+            "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --lighting lit --parallax off --filter ewa";
+        let options = options(&format!("{line} {OF_FILTERS}")).unwrap();
+        let (derivatives, formulas) = (Derivatives::Flat, Formulas::Printed);
+        let (texel_budget, max_anisotropy) = (0, 8.0);
+        let ewa = Ewa {
+            derivatives,
+            formulas,
+            texel_budget,
+            max_anisotropy,
+            every_texel: true,
+            cut: 1.25,
+            texel_kernel: 0.5,
+        };
+        let visibility = Visibility::TwoEnded;
+        let visible = Visible { visibility, derivatives, formulas, texel_budget, max_anisotropy, max_stretch: 3.0 };
+        let expected = [
+            Filter::Nearest,
+            Filter::Bilinear,
+            Filter::Trilinear(Trilinear { derivatives, formulas }),
+            Filter::Ewa(ewa),
+            Filter::Visible(visible),
+            Filter::Horizon(Horizon { lines: 6, far_field: false, far_field_mib: 7, max_anisotropy }),
+            Filter::Parallax(Rays { samples: 5 }),
+            Filter::Truth(Rays { samples: 5 }),
+        ];
+        assert_eq!(Filter::ALL.map(|filter| options.filter.apply(filter)), expected);
         let expected = Settings {
             width: 64,
             height: 36,
             region: Some(Region { x: 8, y: 4, width: 32, height: 16 }),
-            filter: Filter::Horizon,
-            visibility: Visibility::TwoEnded,
+            filter: Filter::Ewa(ewa),
             parallax: false,
-            derivatives: Derivatives::Flat,
-            formulas: Formulas::Printed,
-            texel_budget: 0,
-            cut: 1.25,
-            texel_kernel: 0.5,
-            every_texel: true,
-            max_anisotropy: 8.0,
-            max_stretch: 3.0,
-            samples: 5,
-            lines: 6,
-            far_field: false,
-            far_field_mib: 7,
             lighting: Lighting::Lit,
             cull_back_faces: true,
             msaa: 8,
             tile_size: 16,
         };
-        assert_eq!(parse(line).unwrap(), expected);
+        assert_eq!(options.settings(false).unwrap(), expected);
     }
 
     #[test]
@@ -284,8 +225,11 @@ mod tests {
             ("--size 1x0", "--size"),
             ("--size 8x8 --region 0,0,9,1", "--region"),
         ] {
-            let text = parse(line).unwrap_err().to_string();
-            assert!(text.contains(option), "{line}: {text}");
+            // Whatever filter is chosen.
+            for (filter, ..) in choices::FILTERS {
+                let text = parse(&format!("{line} --filter {filter}")).unwrap_err().to_string();
+                assert!(text.contains(option), "{line}: {text}");
+            }
         }
     }
 }

@@ -3,8 +3,8 @@
 use crate::progress::Progress;
 use crate::refusal::Refusal;
 use crate::{output, stats};
-use basrelief::frame::{Format, Part, Pixel, PngHead, write_png};
-use basrelief::{Frame, Region, Renderer, Settings, Stats};
+use basrelief::frame::{Format, Part, PngHead, write_png};
+use basrelief::{DrawnPixel, Frame, Region, Renderer, Settings, Stats};
 use std::io::BufWriter;
 use std::path::Path;
 use std::time::Instant;
@@ -80,7 +80,7 @@ pub(crate) fn draw(
     output::write(path, &bytes).map(|()| took)
 }
 
-fn draw_whole<P: Pixel>(
+fn draw_whole<P: DrawnPixel>(
     renderer: &mut Renderer,
     settings: &Settings,
     format: Format,
@@ -101,9 +101,9 @@ fn draw_whole<P: Pixel>(
 }
 
 /// Draws the renderer's frame in memory, that of `frame` where it has the size.
-fn draw_timed<P: Pixel>(renderer: &mut Renderer, frame: &mut Frame<P>) -> Took {
+fn draw_timed<P: DrawnPixel>(renderer: &mut Renderer, frame: &mut Frame<P>) -> Took {
     let start = Instant::now();
-    let stats = renderer.render_into(frame, &|| milliseconds(start));
+    let stats = renderer.render_timed(frame, &|| milliseconds(start));
     (milliseconds(start), stats)
 }
 

@@ -1,6 +1,7 @@
 //! What the viewer shows and how keys and mouse change it. Knows nothing of windows.
 
 use crate::options::choices::{FILTERS, word};
+use crate::options::filter::FilterOptions;
 use crate::options::viewer::KEYS;
 use crate::pictures::draw::Canvas;
 use crate::view::orbit::Orbit;
@@ -9,7 +10,7 @@ use crate::view::pace::Pace;
 use crate::view::worker::{Answer, Wish};
 use basrelief::inspect;
 use basrelief::load::{self, LoadOptions};
-use basrelief::{Filter, Frame, Lighting, Region, Scene, Settings};
+use basrelief::{Ewa, Filter, Frame, Lighting, Region, Scene, Settings};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -20,6 +21,8 @@ const STILL: Duration = Duration::from_millis(150);
 pub(crate) struct Viewer {
     scene: Scene,
     settings: Settings,
+    /// What each filter is told when it is chosen.
+    options: FilterOptions,
     path: Option<PathBuf>,
     load_options: LoadOptions,
     orbit: Orbit,
@@ -65,12 +68,19 @@ pub(crate) enum Act {
 }
 
 impl Viewer {
-    pub(crate) fn new(scene: Scene, settings: Settings, path: Option<PathBuf>, load_options: LoadOptions) -> Self {
+    pub(crate) fn new(
+        scene: Scene,
+        settings: Settings,
+        options: FilterOptions,
+        path: Option<PathBuf>,
+        load_options: LoadOptions,
+    ) -> Self {
         let orbit = Orbit::new(scene.camera);
         Self {
-            filters: [settings.filter, Filter::Ewa],
+            filters: [settings.filter, options.apply(Filter::Ewa(Ewa::default()))],
             scene,
             settings,
+            options,
             path,
             load_options,
             orbit,
@@ -92,7 +102,7 @@ impl Viewer {
 
     pub(crate) fn split_with(&mut self, filter: Option<Filter>) {
         self.is_split = filter.is_some();
-        self.filters[1] = filter.unwrap_or(self.filters[1]);
+        self.filters[1] = filter.map_or(self.filters[1], |filter| self.options.apply(filter));
     }
 
     pub(crate) fn keep_full_size(&mut self, is_full_size: bool) {
@@ -130,8 +140,9 @@ impl Viewer {
             Act::Split => {
                 self.is_split = !self.is_split;
                 if self.filters[0] == self.filters[1] {
-                    let is_horizon = self.filters[0] == Filter::Horizon;
-                    self.filters[1] = if is_horizon { Filter::Ewa } else { Filter::Horizon };
+                    let others = [Filter::default(), Filter::Ewa(Ewa::default())].map(|f| self.options.apply(f));
+                    let other = others.into_iter().find(|filter| *filter != self.filters[0]);
+                    self.filters[1] = other.unwrap_or(self.filters[1]);
                 }
                 self.pace.forget();
             }
@@ -156,7 +167,7 @@ impl Viewer {
 
     fn choose(&mut self, number: usize, is_right: bool) {
         if let Some(&(_, filter, _)) = FILTERS.get(number) {
-            self.filters[usize::from(is_right)] = filter;
+            self.filters[usize::from(is_right)] = self.options.apply(filter);
             self.is_split |= is_right;
             self.pace.forget();
         }
@@ -173,7 +184,8 @@ impl Viewer {
         let [width, _] = self.size();
         let scene = Scene { camera: self.orbit.camera(), ..self.scene.clone() };
         let side = usize::from(self.is_split && x >= width / 2);
-        let settings = Settings { filter: self.filters[side], ..self.settings.clone() };
+        let filter = self.options.inspected(self.filters[side]);
+        let settings = Settings { filter, ..self.settings.clone() };
         match inspect::pixel(&scene, &settings, [x, y]) {
             Ok(seen) => self.inspected = Some(overlay::inspector(&seen, self.size())),
             Err(e) => self.message = Some(e.to_string()),
@@ -266,7 +278,7 @@ impl Viewer {
     /// The window's content.
     pub(crate) fn picture(&self) -> Canvas {
         let mut canvas = overlay::frames(&self.shown, self.size());
-        let names = self.filters.map(|filter| word(FILTERS, &filter));
+        let names = self.filters.each_ref().map(word);
         let names = &names[..if self.is_split { 2 } else { 1 }];
         overlay::status(&mut canvas, names, &self.timing());
         if let Some(inspected) = &self.inspected {
@@ -316,7 +328,7 @@ mod tests {
 
     fn viewer() -> Viewer {
         let settings = Settings { width: 320, height: 180, ..Settings::default() };
-        Viewer::new(scene::builtin(), settings, None, LoadOptions::default())
+        Viewer::new(scene::builtin(), settings, FilterOptions::default(), None, LoadOptions::default())
     }
 
     /// Pretends to draw what is due; how wide its pixels are and how many frames there are.
@@ -392,6 +404,6 @@ mod tests {
         assert!(matches!(viewer.load(&path("a.obj")), Some(Wish::Scene(_))) && viewer.scene.meshes.len() == 1);
         assert!(viewer.scene.materials[0].surface.is_none());
         assert!(viewer.load(&path("a_height.png")).is_some(), "{:?}", viewer.message);
-        assert!(viewer.scene.materials[0].surface.as_ref().is_some_and(|surface| surface.relief_depth > 0.0));
+        assert!(viewer.scene.materials[0].surface.as_ref().is_some_and(|surface| surface.relief_depth() > 0.0));
     }
 }

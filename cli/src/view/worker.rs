@@ -1,8 +1,6 @@
 //! Draws frames on threads of its own, so that the window answers while a frame is drawn. Only the latest wish counts.
 
 use basrelief::{Camera, Filter, Frame, Renderer, Scene, Settings};
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Instant;
 
@@ -49,53 +47,91 @@ impl Worker {
     }
 }
 
-/// Renderers of a scene, one for each filter, since tables of one are dropped when it becomes another.
+/// Draws what is wished for, scene after scene.
 struct Painter {
     pool: rayon::ThreadPool,
-    scene: Scene,
-    renderers: HashMap<Filter, Renderer>,
+    /// The scene's renderer, or why there is none.
+    renderer: Result<Renderer, String>,
 }
 
 impl Painter {
     fn new(scene: Scene, pool: rayon::ThreadPool) -> Self {
-        Self { pool, scene, renderers: HashMap::new() }
+        Self { renderer: renderer(scene, &pool), pool }
     }
 
     fn serve(&mut self, wishes: &Receiver<Wish>, answer: &dyn Fn(Answer)) {
         while let Ok(wish) = wishes.recv() {
             match wish {
-                Wish::Draw { camera, settings } => {
-                    let Self { pool, scene, renderers } = self;
-                    answer(pool.install(|| draw(scene, renderers, camera, &settings)).map_err(|e| e.to_string()));
-                }
-                Wish::Scene(scene) => {
-                    self.scene = *scene;
-                    self.renderers.clear();
-                }
+                Wish::Draw { camera, settings } => answer(self.draw(camera, settings)),
+                Wish::Scene(scene) => self.renderer = renderer(*scene, &self.pool),
             }
         }
     }
+
+    fn draw(&mut self, camera: Camera, settings: Vec<Settings>) -> Answer {
+        let Self { pool, renderer } = self;
+        let renderer = renderer.as_mut().map_err(|reason| reason.clone())?;
+        pool.install(|| draw(renderer, camera, settings)).map_err(|e| e.to_string())
+    }
 }
 
-fn draw(
-    scene: &Scene,
-    renderers: &mut HashMap<Filter, Renderer>,
-    camera: Camera,
-    settings: &[Settings],
-) -> Result<Drawn, basrelief::Error> {
+/// A renderer of the scene. It begins with a filter without tables: those are made for what is
+/// wished for first.
+fn renderer(scene: Scene, pool: &rayon::ThreadPool) -> Result<Renderer, String> {
+    let settings = Settings { filter: Filter::Nearest, ..Settings::default() };
+    pool.install(|| Renderer::new(scene, settings)).map_err(|e| e.to_string())
+}
+
+fn draw(renderer: &mut Renderer, camera: Camera, settings: Vec<Settings>) -> Result<Drawn, basrelief::Error> {
+    renderer.set_camera(camera)?;
     let mut drawn = Drawn { frames: Vec::new(), ms: 0.0 };
     for settings in settings {
-        let renderer = match renderers.entry(settings.filter) {
-            Entry::Occupied(entry) => entry.into_mut(),
-            Entry::Vacant(entry) => entry.insert(Renderer::new(scene.clone(), settings.clone())?),
-        };
-        if renderer.settings() != settings {
-            renderer.set_settings(settings.clone())?;
-        }
-        renderer.set_camera(camera)?;
+        renderer.set_settings(settings)?;
         let start = Instant::now();
         drawn.frames.push(renderer.render());
         drawn.ms += start.elapsed().as_secs_f64() * 1e3;
     }
     Ok(drawn)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use basrelief::{Region, render, scene};
+
+    #[test]
+    fn one_renderer_draws_halves_by_two_filters_and_then_another_scene() {
+        let (answers, outbox) = channel();
+        let answer = move |answer| answers.send(answer).unwrap();
+        let worker = Worker::start(scene::builtin(), 2, answer).unwrap();
+        let half = |filter, x| {
+            let region = Some(Region { x, y: 0, width: 16, height: 18 });
+            Settings { width: 32, height: 18, region, filter, ..Settings::default() }
+        };
+        let settings = vec![half(Filter::default(), 0), half(Filter::Bilinear, 16)];
+        let mut other = scene::builtin();
+        other.background = [1.0, 0.0, 0.0, 1.0];
+        for scene in [scene::builtin(), other] {
+            let camera = scene.camera;
+            worker.wish(Wish::Scene(Box::new(scene.clone())));
+            // Once more with all tables made.
+            for _ in 0..2 {
+                worker.wish(Wish::Draw { camera, settings: settings.clone() });
+                let drawn = outbox.recv().unwrap().unwrap();
+                let expected = settings.iter().map(|half| render(scene.clone(), half.clone()).unwrap());
+                assert!(drawn.frames.into_iter().eq(expected));
+            }
+        }
+    }
+
+    #[test]
+    fn a_scene_that_cannot_be_drawn_is_answered_with_the_reason() {
+        let (answers, outbox) = channel();
+        let wrong = Scene { background: [f32::NAN; 4], ..scene::builtin() };
+        let worker = Worker::start(wrong, 1, move |answer: Answer| answers.send(answer).unwrap()).unwrap();
+        let camera = scene::builtin().camera;
+        worker.wish(Wish::Draw { camera, settings: vec![Settings::default()] });
+        let reason = outbox.recv().unwrap().err().unwrap();
+        assert!(reason.contains("background"), "{reason}");
+    }
 }

@@ -1,10 +1,11 @@
 //! The numbers of an inspected pixel, formula by formula, as text or JSON.
 
 use crate::commands::inspect::subject::Subject;
-use crate::options::choices::{DERIVATIVES, FORMULAS, word};
+use crate::options::choices::word;
 use crate::refusal::Refusal;
-use basrelief::inspect::{Conic, Corner, Cut, Inspection, Projected, Ray, Reading, Sets};
-use basrelief::{Derivatives, Formulas};
+use basrelief::footprint::Ellipse;
+use basrelief::inspect::{Corner, Cut, Inspection, Projected, Ray, Reading, Sets};
+use basrelief::{Derivatives, FootprintRule, Formulas};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -82,13 +83,13 @@ fn push_formula(text: &mut String, formula: u32, derivatives: Derivatives, readi
         Derivatives::Flat => (&reading.flat, RIGHT_SIDES[0][is_printed]),
         Derivatives::Relief => (&reading.relief, RIGHT_SIDES[1][is_printed]),
     };
-    let _ = writeln!(text, "\nformula ({formula}) as {}, in repeats", word(FORMULAS, &reading.formulas));
+    let _ = writeln!(text, "\nformula ({formula}) as {}, in repeats", word(&reading.formulas));
     let values = [projected.dx[0], projected.dx[1], projected.dy[0], projected.dy[1]];
     for ((name, side), value) in ["du/dx", "dv/dx", "du/dy", "dv/dy"].iter().zip(sides).zip(values) {
         let _ = writeln!(text, "  {name} = {side:<30} = {value:+.9}");
     }
     let f = if is_printed == 1 { "F = (Ux Vy + Uy Vx)^2" } else { "F = (Ux Vy - Uy Vx)^2" };
-    let Conic { a, b, c, f: right } = projected.conic;
+    let Ellipse { a, b, c, f: right } = projected.conic;
     let _ = writeln!(text, "formula (1) of it, in texels");
     let sides = [("A = Vx^2 + Vy^2", a), ("B = -2 (Ux Vx + Uy Vy)", b), ("C = Ux^2 + Uy^2", c), (f, right)];
     for (side, value) in sides {
@@ -101,8 +102,8 @@ fn push_formula(text: &mut String, formula: u32, derivatives: Derivatives, readi
 
 fn push_sets(text: &mut String, sets: &Sets, subject: &Subject) {
     let [w, h] = sets.texels_per_repeat;
-    let of = word(DERIVATIVES, &subject.settings.derivatives);
-    let reading = word(FORMULAS, &subject.settings.formulas);
+    let FootprintRule { derivatives, formulas, .. } = subject.settings.filter.footprint_rule();
+    let (of, reading) = (word(&derivatives), word(&formulas));
     let counted = sets.counted_twice.iter().map(|(_, count)| count - 1).sum::<u32>();
     let _ = writeln!(text, "\ntexels of level {} ({w}x{h} a repeat), {of} derivatives as {reading}", sets.level);
     for (name, num) in [
@@ -193,7 +194,7 @@ struct ProjectedReport {
 #[derive(Serialize)]
 struct CutReport {
     direction: [f64; 2],
-    reach: f64,
+    displacement: f64,
     relief_depth: f64,
     ellipse: [f64; 2],
     hit: [f64; 2],
@@ -235,7 +236,7 @@ impl ReadingReport {
     fn new(reading: &Reading) -> Self {
         let corner = |Corner { uv, offset }: Corner| [uv[0], uv[1], offset[0], offset[1]];
         Self {
-            formulas: word(FORMULAS, &reading.formulas),
+            formulas: word(&reading.formulas),
             row: reading.row.map(corner),
             column: reading.column.map(corner),
             formula_2: ProjectedReport::new(&reading.flat),
@@ -246,15 +247,15 @@ impl ReadingReport {
 
 impl ProjectedReport {
     fn new(projected: &Projected) -> Self {
-        let conic = |Conic { a, b, c, f }: Conic| [a, b, c, f];
+        let numbers = |Ellipse { a, b, c, f }: Ellipse| [a, b, c, f];
         Self {
             dudx: projected.dx[0],
             dvdx: projected.dx[1],
             dudy: projected.dy[0],
             dvdy: projected.dy[1],
             center: projected.center,
-            ellipse: conic(projected.conic),
-            widened_ellipse: conic(projected.widened),
+            ellipse: numbers(projected.conic),
+            widened_ellipse: numbers(projected.widened),
             area_texels: projected.area,
             half_axes_texels: projected.half_axes,
         }
@@ -269,7 +270,7 @@ impl CutReport {
         });
         Self {
             direction: cut.direction,
-            reach: cut.reach,
+            displacement: cut.displacement,
             relief_depth: cut.relief_depth,
             ellipse: cut.ellipse,
             hit: cut.hit,

@@ -29,7 +29,8 @@ impl Subject {
             });
         }
         let pixel = options.pixel.ok_or("the pixel is missing: say --pixel X,Y, or --figure N")?;
-        let settings = options.settings.settings(false)?;
+        let mut settings = options.settings.settings(false)?;
+        settings.filter = options.settings.filter.inspected(settings.filter);
         if settings.region.is_some() {
             return Err("--region: a pixel is named by its place in the whole picture".into());
         }

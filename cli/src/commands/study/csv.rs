@@ -9,7 +9,7 @@ pub(crate) fn table(study: &Study) -> String {
     let mut table = String::from("filter,options,width,height,threads,frame_ms,psnr_db,ssim,flip,on_psnr_front\n");
     for (i, outcome) in study.outcomes.iter().enumerate() {
         let basrelief::Settings { width, height, .. } = study.settings;
-        let (name, options, threads) = (outcome.trial.name, outcome.trial.options, study.machine.threads);
+        let (name, options, threads) = (outcome.trial.name, &outcome.trial.options, study.machine.threads);
         let _ = writeln!(
             table,
             "\"{name}\",{options},{width},{height},{threads},{:.3},{:.4},{:.6},{:.6},{}",

@@ -2,12 +2,12 @@
 
 use crate::commands::study::crops::{self, Crop};
 use crate::commands::study::machine::Machine;
-use crate::commands::study::trials::{TRIALS, Trial};
+use crate::commands::study::trials::Trial;
 use crate::progress::Progress;
 use crate::refusal::Refusal;
 use basrelief::frame::Format;
 use basrelief::metrics::{PIXELS_PER_DEGREE, Picture, compare, errors_as_colors, flip, heat_map};
-use basrelief::{Filter, Frame, Renderer, Scene, Settings};
+use basrelief::{Filter, Frame, Rays, Renderer, Scene, Settings};
 use std::time::Instant;
 
 /// The error that the heat maps show in their brightest colour.
@@ -16,9 +16,9 @@ pub(crate) const HEAT_SCALE: f32 = 0.25;
 /// The same of FLIP errors.
 pub(crate) const FLIP_SCALE: f32 = 0.5;
 
-/// How much work is done.
-#[derive(Clone, Copy)]
+/// What is done.
 pub(crate) struct Plan {
+    pub(crate) trials: Vec<Trial>,
     pub(crate) truth_samples: u32,
     pub(crate) repeat: u32,
 }
@@ -38,7 +38,7 @@ pub(crate) struct Study {
 
 /// A trial's figures and pictures.
 pub(crate) struct Outcome {
-    pub(crate) trial: &'static Trial,
+    pub(crate) trial: Trial,
     /// Middle time of a frame in milliseconds.
     pub(crate) ms: f64,
     /// In decibels; infinite where the pictures are equal.
@@ -56,16 +56,17 @@ pub(crate) fn run(scene: Scene, settings: &Settings, plan: Plan, progress: &Prog
     let num_triangles = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     progress.stage(format!("drawing the truth, {} rays a pixel", plan.truth_samples));
     let start = Instant::now();
-    let truth = Settings { filter: Filter::Truth, samples: plan.truth_samples, ..settings.clone() };
-    let mut renderer = Renderer::new(scene, truth)?;
+    let truth = Filter::Truth(Rays { samples: plan.truth_samples });
+    let with = |filter| Settings { filter, ..settings.clone() };
+    let mut renderer = Renderer::new(scene, with(truth))?;
     let truth = over_black(renderer.render());
     let truth_ms = milliseconds(start);
     let truth_picture = Picture::from(&truth);
     let (mut outcomes, mut frames, mut tables_ms) = (Vec::new(), Vec::new(), 0.0_f64);
-    for (i, trial) in TRIALS.iter().enumerate() {
-        progress.stage(format!("{} ({} of {})", trial.name, i + 1, TRIALS.len()));
+    for (i, trial) in plan.trials.iter().enumerate() {
+        progress.stage(format!("{} ({} of {})", trial.name, i + 1, plan.trials.len()));
         let start = Instant::now();
-        renderer.set_settings(trial.settings(settings))?;
+        renderer.set_settings(with(trial.filter))?;
         tables_ms = tables_ms.max(milliseconds(start));
         let (frame, ms) = draw(&mut renderer, plan.repeat);
         outcomes.push(measured(trial, ms, &frame, &truth_picture)?);
@@ -90,7 +91,7 @@ fn draw(renderer: &mut Renderer, repeat: u32) -> (Frame, f64) {
     let mut times: Vec<f64> = (0..repeat)
         .map(|_| {
             let start = Instant::now();
-            renderer.render_into(&mut frame, &|| 0.0);
+            renderer.render_into(&mut frame);
             milliseconds(start)
         })
         .collect();
@@ -98,12 +99,12 @@ fn draw(renderer: &mut Renderer, repeat: u32) -> (Frame, f64) {
     (over_black(frame), times[(times.len() - 1) / 2])
 }
 
-fn measured(trial: &'static Trial, ms: f64, frame: &Frame, truth: &Picture) -> Result<Outcome, basrelief::Error> {
+fn measured(trial: &Trial, ms: f64, frame: &Frame, truth: &Picture) -> Result<Outcome, basrelief::Error> {
     let picture = Picture::from(frame);
     let difference = compare(truth, &picture)?;
     let seen = flip(truth, &picture, PIXELS_PER_DEGREE)?;
     Ok(Outcome {
-        trial,
+        trial: trial.clone(),
         ms,
         psnr: difference.psnr_db,
         ssim: difference.ssim,
@@ -147,11 +148,13 @@ impl Study {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::commands::study::trials::tests::defaults;
 
     /// A study of made-up figures: milliseconds and decibels.
     pub(crate) fn study(figures: &[(f64, f64)]) -> Study {
+        let trials = defaults();
         let outcome = |(i, &(ms, psnr)): (usize, &(f64, f64))| Outcome {
-            trial: &TRIALS[i],
+            trial: trials[i].clone(),
             ms,
             psnr,
             ssim: 0.9,
@@ -162,12 +165,12 @@ pub(crate) mod tests {
         };
         Study {
             settings: Settings::default(),
-            plan: Plan { truth_samples: 1, repeat: 1 },
+            outcomes: figures.iter().enumerate().map(outcome).collect(),
+            plan: Plan { trials, truth_samples: 1, repeat: 1 },
             machine: Machine::here(),
             num_triangles: 0,
             truth_ms: 0.0,
             tables_ms: 0.0,
-            outcomes: figures.iter().enumerate().map(outcome).collect(),
             truth_png: vec![],
             crops: vec![],
         }

@@ -22,6 +22,7 @@ use std::process::ExitCode;
 pub(crate) fn run(mut options: StudyOptions) -> Result<ExitCode, Refusal> {
     let mut settings = SettingsOptions::default();
     scene_file::read_into(&mut options.scene, &mut settings)?;
+    let trials = trials::all(&settings.filter)?;
     let settings = settings_of(&options, &settings)?;
     let progress = Progress::new(options.quiet);
     let scene = load(&options, &settings, &progress)?;
@@ -29,7 +30,7 @@ pub(crate) fn run(mut options: StudyOptions) -> Result<ExitCode, Refusal> {
     std::fs::create_dir_all(folder).map_err(|e| Refusal::file(folder, format_args!("cannot be made: {e}")))?;
     let [page_path, csv_path] = ["index.html", "study.csv"].map(|name| folder.join(name));
     [&page_path, &csv_path].into_iter().try_for_each(|path| output::check(path))?;
-    let plan = gather::Plan { truth_samples: options.truth_samples, repeat: options.repeat };
+    let plan = gather::Plan { trials, truth_samples: options.truth_samples, repeat: options.repeat };
     let study = thread_pool(options.threads)?.install(|| gather::run(scene, &settings, plan, &progress))?;
     output::write(&csv_path, csv::table(&study).as_bytes())?;
     output::write(&page_path, page::html(&study)?.as_bytes())?;

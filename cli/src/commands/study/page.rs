@@ -33,7 +33,9 @@ struct Page {
 struct Row {
     number: usize,
     name: &'static str,
-    options: &'static str,
+    options: String,
+    /// All that the filter was told, by those options and by the scene file.
+    filter: String,
     ms: String,
     psnr: String,
     ssim: String,
@@ -63,7 +65,8 @@ pub(crate) fn html(study: &Study) -> Result<String, Refusal> {
     let row = |(i, outcome): (usize, &Outcome)| Row {
         number: i + 1,
         name: outcome.trial.name,
-        options: outcome.trial.options,
+        options: outcome.trial.options.clone(),
+        filter: format!("{:?}", outcome.trial.filter),
         ms: number(outcome.ms, if outcome.ms < 100.0 { 1 } else { 0 }),
         psnr: if outcome.psnr.is_finite() { number(outcome.psnr, 1) } else { "equal".into() },
         ssim: number(outcome.ssim, 4),

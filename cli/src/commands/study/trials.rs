@@ -1,109 +1,112 @@
 //! Which filters are studied, and with which options.
 
-use basrelief::{Derivatives, Filter, Settings, Visibility};
+use crate::options::choices::{FILTERS, Words};
+use crate::options::filter::FilterOptions;
+use crate::refusal::Refusal;
+use basrelief::{Filter, Rays};
+use clap::Parser;
 
 /// A filter with its options.
+#[derive(Clone)]
 pub(crate) struct Trial {
     /// A short name.
     pub(crate) name: &'static str,
     /// What sets it on the command line.
-    pub(crate) options: &'static str,
-    change: fn(&mut Settings),
+    pub(crate) options: String,
+    /// With these options, and those of the study where they say nothing.
+    pub(crate) filter: Filter,
+}
+
+/// Name and options. A filter without a line is tried by its own name as it is.
+const TRIALS: &[(&str, &str)] = &[
+    ("nearest", "--filter nearest"),
+    ("bilinear", "--filter bilinear"),
+    ("trilinear", "--filter trilinear"),
+    ("EWA (2)", "--filter ewa --derivatives flat"),
+    ("EWA (3)", "--filter ewa --derivatives relief"),
+    ("visible, two-ended", "--filter visible --visible two-ended"),
+    ("visible, exact", "--filter visible --visible exact"),
+    ("parallax, 1 ray", "--filter parallax --samples 1"),
+    ("parallax, 4 rays", "--filter parallax --samples 4"),
+    ("parallax, 16 rays", "--filter parallax --samples 16"),
+    ("horizon, no tables", "--filter horizon --far-field off"),
+    ("horizon, 4 lines", "--filter horizon --lines 4"),
+    ("horizon", "--filter horizon"),
+    ("horizon, 16 lines", "--filter horizon --lines 16"),
+];
+
+/// All trials, each with the options that are `given` where its own say nothing.
+pub(crate) fn all(given: &FilterOptions) -> Result<Vec<Trial>, Refusal> {
+    let trial = |name, options: String| Trial::new(name, options, given);
+    let mut trials: Vec<_> =
+        TRIALS.iter().map(|&(name, options)| trial(name, options.into())).collect::<Result<_, _>>()?;
+    for &(word, filter, _) in FILTERS {
+        // The truth is what all are held against.
+        let is_tried = |trial: &Trial| trial.filter.is_same_choice(&filter);
+        if !trials.iter().any(is_tried) && !filter.is_same_choice(&Filter::Truth(Rays::default())) {
+            trials.push(trial(word, format!("--filter {word}"))?);
+        }
+    }
+    Ok(trials)
+}
+
+/// The options of a trial as a command line.
+#[derive(Parser)]
+#[command(no_binary_name = true)]
+struct Line {
+    #[command(flatten)]
+    filter: FilterOptions,
 }
 
 impl Trial {
-    /// The settings of the trial, given those of the study.
-    pub(crate) fn settings(&self, settings: &Settings) -> Settings {
-        let mut settings = settings.clone();
-        (self.change)(&mut settings);
-        settings
+    fn new(name: &'static str, options: String, given: &FilterOptions) -> Result<Self, Refusal> {
+        let mut line = Line { filter: given.clone() };
+        line.try_update_from(options.split(' ')).map_err(|e| e.to_string())?;
+        Ok(Self { name, filter: line.filter.chosen(), options })
     }
 }
 
-/// Trials of one filter stand together, so that its tables are built once.
-pub(crate) const TRIALS: &[Trial] = &[
-    Trial { name: "nearest", options: "--filter nearest", change: |s| s.filter = Filter::Nearest },
-    Trial { name: "bilinear", options: "--filter bilinear", change: |s| s.filter = Filter::Bilinear },
-    Trial { name: "trilinear", options: "--filter trilinear", change: |s| s.filter = Filter::Trilinear },
-    Trial {
-        name: "EWA (2)",
-        options: "--filter ewa --derivatives flat",
-        change: |s| (s.filter, s.derivatives) = (Filter::Ewa, Derivatives::Flat),
-    },
-    Trial {
-        name: "EWA (3)",
-        options: "--filter ewa --derivatives relief",
-        change: |s| (s.filter, s.derivatives) = (Filter::Ewa, Derivatives::Relief),
-    },
-    Trial {
-        name: "visible, two-ended",
-        options: "--filter visible --visible two-ended",
-        change: |s| (s.filter, s.visibility) = (Filter::Visible, Visibility::TwoEnded),
-    },
-    Trial {
-        name: "visible, exact",
-        options: "--filter visible --visible exact",
-        change: |s| (s.filter, s.visibility) = (Filter::Visible, Visibility::Exact),
-    },
-    Trial {
-        name: "parallax, 1 ray",
-        options: "--filter parallax --samples 1",
-        change: |s| (s.filter, s.samples) = (Filter::Parallax, 1),
-    },
-    Trial {
-        name: "parallax, 4 rays",
-        options: "--filter parallax --samples 4",
-        change: |s| (s.filter, s.samples) = (Filter::Parallax, 4),
-    },
-    Trial {
-        name: "parallax, 16 rays",
-        options: "--filter parallax --samples 16",
-        change: |s| (s.filter, s.samples) = (Filter::Parallax, 16),
-    },
-    Trial {
-        name: "horizon, no tables",
-        options: "--filter horizon --far-field off",
-        change: |s| (s.filter, s.far_field) = (Filter::Horizon, false),
-    },
-    Trial {
-        name: "horizon, 4 lines",
-        options: "--filter horizon --lines 4",
-        change: |s| (s.filter, s.lines) = (Filter::Horizon, 4),
-    },
-    Trial { name: "horizon", options: "--filter horizon", change: |s| s.filter = Filter::Horizon },
-    Trial {
-        name: "horizon, 16 lines",
-        options: "--filter horizon --lines 16",
-        change: |s| (s.filter, s.lines) = (Filter::Horizon, 16),
-    },
-];
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::options::args::{Cli, Command};
-    use crate::options::choices::FILTERS;
-    use clap::Parser;
+    use basrelief::{Derivatives, Ewa, Horizon};
 
-    #[test]
-    fn options_are_those_of_the_command_line() {
-        for trial in TRIALS {
-            let line = ["basrelief", "render"].into_iter().chain(trial.options.split(' '));
-            let Some(Command::Render(options)) = Cli::try_parse_from(line).unwrap().command else { panic!("render") };
-            assert_eq!(
-                options.settings.settings(false).unwrap(),
-                trial.settings(&Settings::default()),
-                "{}",
-                trial.name
-            );
-        }
+    /// The trials without options of the study's own.
+    pub(in super::super) fn defaults() -> Vec<Trial> {
+        all(&FilterOptions::default()).unwrap()
+    }
+
+    fn named(trials: &[Trial], name: &str) -> Filter {
+        trials.iter().find(|trial| trial.name == name).unwrap().filter
     }
 
     #[test]
-    fn every_filter_is_tried() {
-        for &(word, filter, _) in FILTERS {
-            let is_tried = TRIALS.iter().any(|trial| trial.settings(&Settings::default()).filter == filter);
-            assert!(is_tried || filter == Filter::Truth, "{word}");
+    fn options_are_those_of_the_command_line() {
+        let trials = defaults();
+        assert!(trials.len() >= TRIALS.len());
+        assert_eq!(named(&trials, "horizon"), Filter::default());
+        let horizon = Horizon { lines: 16, ..Horizon::default() };
+        assert_eq!(named(&trials, "horizon, 16 lines"), Filter::Horizon(horizon));
+        let ewa = Ewa { derivatives: Derivatives::Flat, ..Ewa::default() };
+        assert_eq!(named(&trials, "EWA (2)"), Filter::Ewa(ewa));
+    }
+
+    #[test]
+    fn options_of_the_study_stand_below_those_of_a_trial() {
+        let given = Horizon { lines: 7, max_anisotropy: 8.0, ..Horizon::default() };
+        let trials = all(&Filter::Horizon(given).into()).unwrap();
+        assert_eq!(named(&trials, "horizon"), Filter::Horizon(given));
+        assert_eq!(named(&trials, "horizon, 4 lines"), Filter::Horizon(Horizon { lines: 4, ..given }));
+        let ewa = Ewa { derivatives: Derivatives::Relief, max_anisotropy: 8.0, ..Ewa::default() };
+        assert_eq!(named(&trials, "EWA (3)"), Filter::Ewa(ewa));
+    }
+
+    #[test]
+    fn every_filter_is_tried_but_the_truth() {
+        let trials = defaults();
+        for (word, filter, _) in FILTERS {
+            let is_tried = trials.iter().any(|trial| trial.filter.is_same_choice(filter));
+            assert!(is_tried != (*word == "truth"), "{word}");
         }
     }
 }

@@ -80,11 +80,11 @@ fn draw_relief(canvas: &mut Canvas, map: &Map, cut: &Cut) {
 /// What is seen and what is hidden between entry and exit, and the line of sight over the highest so far.
 fn draw_horizon(canvas: &mut Canvas, map: &Map, cut: &Cut) {
     let [entry, exit] = cut.ellipse;
-    let reach = cut.reach.max(1e-9);
+    let displacement = cut.displacement.max(1e-9);
     let last = cut.points.iter().position(|point| point.horizon >= exit).unwrap_or(cut.points.len() - 1);
-    let sight = cut.points[..=last].iter().filter(|point| point.along >= entry - reach);
+    let sight = cut.points[..=last].iter().filter(|point| point.along >= entry - displacement);
     let sight: Vec<Point> = sight
-        .map(|point| (point.along, (point.along - point.horizon) / reach))
+        .map(|point| (point.along, (point.along - point.horizon) / displacement))
         .filter(|(_, depth)| *depth >= -ABOVE)
         .map(|(along, depth)| map.place(along, depth))
         .collect();
@@ -119,7 +119,7 @@ fn draw_length(canvas: &mut Canvas, map: &Map, [from, to]: [&CutPoint; 2], is_od
 
 fn draw_ray(canvas: &mut Canvas, map: &Map, cut: &Cut, layers: Layers) {
     let [along, depth] = cut.hit;
-    let sight = |base: f64, depth: f64| map.place(base + depth * cut.reach, depth);
+    let sight = |base: f64, depth: f64| map.place(base + depth * cut.displacement, depth);
     if layers.horizon || layers.ellipses[0] {
         for base in cut.ellipse {
             canvas.line(&[sight(base, -ABOVE), sight(base, 1.0)], Pen::dashed(1.0, FAINT));

@@ -14,7 +14,7 @@ const MARGIN: u32 = 16;
 /// Draws what a pixel sees; the cut only where relief is traced.
 pub(crate) fn draw(seen: &Inspection, title: &str, layers: Layers) -> Canvas {
     let [width, texels_height] = TEXELS_SIZE;
-    let has_cut = seen.cut.reach > 0.0;
+    let has_cut = seen.cut.displacement > 0.0;
     let top = TITLE_HEIGHT + texels_height + MARGIN;
     let mut canvas = Canvas::new(WIDTH, top + if has_cut { CUT_HEIGHT + MARGIN } else { 0 }, WHITE);
     canvas.text([MARGIN as f32, 10.0], title, Size::Title, INK);
@@ -85,7 +85,7 @@ fn texel_keys(seen: &Inspection, layers: Layers) -> Vec<(Key, String)> {
         (layers.ellipses[0], Key::Line(Pen::dashed(2.5, FLAT)), "ellipse by (2), around the polygon's place".into()),
         (layers.ellipses[1], Key::Line(Pen::solid(2.5, RELIEF)), "ellipse by (3), around the hit".into()),
         (texels::is_bounded(seen), Key::Line(texels::FILTERED), "filtered: without a jump of the relief".into()),
-        (seen.cut.reach > 0.0, Key::Line(Pen::solid(2.0, RAY)), "the view ray down to the hit".into()),
+        (seen.cut.displacement > 0.0, Key::Line(Pen::solid(2.0, RAY)), "the view ray down to the hit".into()),
         (layers.rays, Key::Line(Pen::solid(1.0, TWICE)), "from hidden to covering texels".into()),
     ];
     keys.into_iter().filter(|(is_shown, ..)| *is_shown).map(|(_, key, text)| (key, text)).collect()

@@ -2,7 +2,8 @@
 
 use crate::pictures::draw::{Canvas, Pen, Point, Rgba, Size};
 use crate::pictures::inspection::palette::{FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE};
-use basrelief::inspect::{Conic, Inspection, Projected, Reading};
+use basrelief::footprint::Ellipse;
+use basrelief::inspect::{Inspection, Projected, Reading};
 use basrelief::texture::srgb8_from_linear;
 use std::collections::{HashMap, HashSet};
 
@@ -57,7 +58,7 @@ pub(crate) fn draw(seen: &Inspection, size: [u32; 2], layers: Layers) -> Canvas 
         canvas.disc(place, 6.0, [255, 255, 255, 255]);
         canvas.disc(place, 4.0, color);
     }
-    if size[1] >= 360 && seen.cut.reach > 0.0 {
+    if size[1] >= 360 && seen.cut.displacement > 0.0 {
         draw_view(&mut canvas, seen);
     }
     canvas
@@ -168,14 +169,12 @@ fn draw_view(canvas: &mut Canvas, seen: &Inspection) {
 }
 
 /// The outline of an ellipse around `center`, its points closest where it bends most.
-fn outline(conic: &Conic, center: [f32; 2]) -> impl Iterator<Item = [f32; 2]> {
-    let Conic { a, b, c, f } = *conic;
-    let half = (0.5 * (a - c)).hypot(0.5 * b);
-    // The larger eigenvalue of [[A, B/2], [B/2, C]] is that of the shorter axis.
-    let larger = 0.5 * (a + c) + half;
-    let smaller = (a * c - 0.25 * b * b) / larger;
-    let [short, long] = [larger, smaller].map(|eigenvalue| (f / eigenvalue).sqrt());
-    let (sin, cos) = (0.5 * b.atan2(a - c)).sin_cos();
+fn outline(ellipse: &Ellipse, center: [f32; 2]) -> impl Iterator<Item = [f32; 2]> {
+    // With F as it stands: as printed it is not that of A, B and C. The larger eigenvalue is that of
+    // the shorter axis.
+    let [smaller, larger] = ellipse.squared_axes();
+    let [short, long] = [larger, smaller].map(|eigenvalue| (ellipse.f / eigenvalue).sqrt());
+    let (sin, cos) = (0.5 * ellipse.b.atan2(ellipse.a - ellipse.c)).sin_cos();
     (0..=128).map(move |i| {
         let (y, x) = (i as f32 / 128.0 * std::f32::consts::TAU).sin_cos();
         let [x, y] = [short * x, long * y];
@@ -191,12 +190,12 @@ mod tests {
     fn outlines_lie_on_the_ellipse() {
         for [a, b, c, f] in [[3.0, 2.0, 5.0, 7.0], [1.0, 0.0, 1.0, 4.0], [20.8, 5.6, 3.98, 75.2], [0.5, -1.9, 2.0, 0.1]]
         {
-            let conic = Conic { a, b, c, f };
-            let points: Vec<_> = outline(&conic, [0.0, 0.0]).collect();
-            assert!(points.iter().all(|&point| (conic.r2(point) - 1.0).abs() < 1e-3), "{conic:?}");
+            let ellipse = Ellipse { a, b, c, f };
+            let points: Vec<_> = outline(&ellipse, [0.0, 0.0]).collect();
+            assert!(points.iter().all(|&point| (ellipse.r2(point) - 1.0).abs() < 1e-3), "{ellipse:?}");
             let most = points.iter().map(|p| p[0].hypot(p[1])).fold(0.0, f32::max);
-            let mean = 0.5 * (a + c) - (0.5 * (a - c)).hypot(0.5 * b);
-            assert!((most / (f / mean).sqrt() - 1.0).abs() < 1e-2, "the tips are there: {conic:?}");
+            let smaller = 0.5 * (a + c) - (0.5_f32 * (a - c)).hypot(0.5 * b);
+            assert!((most / (f / smaller).sqrt() - 1.0).abs() < 1e-2, "the tips are there: {ellipse:?}");
         }
     }
 }
