@@ -85,9 +85,8 @@ impl Surface {
     /// and normals stay. Colours are linear RGB from 0 to [`Self::color_scale`]; others are
     /// clamped.
     ///
-    /// [`Filter::Horizon`](crate::Filter::Horizon) measures on colours what levels lose in
-    /// occlusion, so levels whose colours are far apart make it read finer ones than the surface
-    /// itself would.
+    /// Every filter reads the levels that it reads of the surface itself; only the tables of
+    /// [`Filter::Horizon`](crate::Filter::Horizon) may be made from another one.
     pub fn with_level_colors(&self, colors: &[[f32; 3]]) -> Self {
         let packed = |c: f32| (c / self.color_scale * FULL_F32 + 0.5).clamp(0.0, FULL_F32) as u32;
         let levels = self.levels.iter().enumerate().map(|(i, level)| match colors.get(i).or(colors.last()) {
