@@ -1,9 +1,54 @@
-//! Draws height-mapped surfaces on the CPU, with the texels that the relief hides left out of the texture filter.
+//! Draws height-mapped surfaces on the CPU, with the texels that the relief hides left out of the
+//! texture filter.
 //!
-//! A pixel far away on a cobbled street covers thousands of texels; the eye sees the near sides and tops of the stones and
-//! none of what lies behind them. The usual filters average all of it. This crate averages what the eye sees: by the method
-//! of Romanyuk and Archangel 2017 ([`Filter::Visible`]), and by a sweep that gives each texel its own place and its visible
-//! length ([`Filter::Horizon`], the default). Any number of threads, tile size and SIMD level gives the same bytes.
+//! A pixel far away on a cobbled street covers thousands of texels; the eye sees the near sides and
+//! tops of the stones and none of what lies behind them. The usual filters average all of it. This
+//! crate averages what the eye sees: by the method of Romanyuk and Archangel 2017
+//! ([`Filter::Visible`]), and by a sweep that gives each texel its own place and its visible length
+//! ([`Filter::Horizon`], the default). Any number of threads, tile size and SIMD level gives the
+//! same bytes.
+//!
+//! # A frame
+//!
+//! ```no_run
+//! use basrelief::{Settings, render, scene};
+//!
+//! render(scene::builtin(), Settings::default())?.save("street.png")?;
+//! # Ok::<(), basrelief::Error>(())
+//! ```
+//!
+//! [`load::load`] makes a scene of an OBJ file, its MTL files and images.
+//!
+//! # A filter alone
+//!
+//! For a renderer that has texture coordinates and derivatives of its own:
+//!
+//! ```
+//! use basrelief::filter::Prepared;
+//! use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps};
+//! use basrelief::{Filter, Visible};
+//!
+//! // White ridges and black joints, as deep as a tenth of a repeat.
+//! let ridge = |x: u32| if x % 16 < 8 { 1.0 } else { 0.0 };
+//! let ground = Prepared::new(Surface::new(SurfaceMaps {
+//!     albedo: Some(ColorImage::from_fn(64, 64, |x, _| [ridge(x); 3])),
+//!     height: Some(HeightImage::from_fn(64, 64, |x, _| ridge(x))),
+//!     relief_depth: 0.1,
+//!     ..SurfaceMaps::default()
+//! })?);
+//! // A place, its derivatives to the right and down the screen, and the direction from the eye:
+//! // along u, along v, and down. Once from above, once from low over the ground.
+//! let seen_along = |view| ground.footprint([0.3, 0.7], [0.5, 0.0], [0.0, 0.1], view);
+//! let pixels = [seen_along([0.0, 0.0, 1.0]), seen_along([0.9, 0.0, 0.3])];
+//! let colors = ground.colors(&Filter::default(), &pixels);
+//! assert!(colors[0][0] < 0.6 && colors[1][0] > 0.8);
+//! // By the paper's own method.
+//! let colors = ground.colors(&Filter::Visible(Visible::default()), &pixels);
+//! assert!(colors[0][0] < 0.6 && colors[1][0] > 0.8);
+//! # Ok::<(), basrelief::Error>(())
+//! ```
+//!
+//! # Meshes of one's own
 //!
 //! ```
 //! use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps};
@@ -12,8 +57,9 @@
 //!
 //! // Planks: five in a repeat, round on top, with dark joints between them.
 //! let height = |x: u32| 1.0 - (((x % 26) as f32 - 12.5) / 13.0).powi(4);
+//! let color = |x: u32| [0.8, 0.5, 0.3].map(|c: f32| c * height(x));
 //! let maps = SurfaceMaps {
-//!     albedo: Some(ColorImage::from_fn(130, 64, |x, _| [0.8, 0.5, 0.3].map(|c: f32| c * height(x)))),
+//!     albedo: Some(ColorImage::from_fn(130, 64, |x, _| color(x))),
 //!     height: Some(HeightImage::from_fn(130, 64, |x, _| height(x))),
 //!     relief_depth: 0.1,
 //!     ..SurfaceMaps::default()
@@ -24,84 +70,81 @@
 //! let tex_coords = corners.map(|(x, z)| Vec2::new(x, -z)).to_vec();
 //! let floor = Mesh::new(positions, tex_coords, vec![], vec![[0, 1, 2], [0, 2, 3]]);
 //! let camera = Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, ..Camera::default() };
-//! let scene = Scene { meshes: vec![floor], materials: vec![material], camera, ..Scene::default() };
+//! let (meshes, materials) = (vec![floor], vec![material]);
+//! let scene = Scene { meshes, materials, camera, ..Scene::default() };
 //!
 //! let frame = render(scene, Settings { width: 96, height: 64, ..Settings::default() })?;
 //! // Nothing above the horizon, planks below it.
 //! assert_eq!(frame.pixels[0], [0.0; 4]);
 //! assert_eq!(frame.pixels[63 * 96 + 48][3], 1.0);
-//! frame.save(std::env::temp_dir().join("planks.png"))?;
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
-//! A frame of bytes, as windows and video encoders take them:
+//! # Many frames, as bytes
+//!
+//! A [`Renderer`] keeps buffers, and what it has prepared of the scene, between frames:
 //!
 //! ```
-//! use basrelief::{Frame, Renderer, Settings, scene};
-//!
-//! let settings = Settings { width: 160, height: 90, ..Settings::default() };
-//! let mut renderer = Renderer::new(scene::builtin(), settings)?;
-//! // Bytes of sRGB; a quarter of the memory that linear light takes. Draw into it as often as you like.
-//! let mut frame = Frame::<[u8; 4]>::default();
-//! renderer.render_into(&mut frame);
-//! let bytes: &[u8] = frame.pixels.as_flattened();
-//! # assert_eq!((bytes.len(), bytes[3]), (160 * 90 * 4, 255));
-//! # Ok::<(), basrelief::Error>(())
-//! ```
-//!
-//! Several frames of one scene, here of the built-in one:
-//!
-//! ```
-//! # std::env::set_current_dir(std::env::temp_dir()).unwrap();
-//! use basrelief::{Camera, Renderer, Settings, scene};
+//! use basrelief::{Camera, Frame, Renderer, Settings, scene};
 //!
 //! let settings = Settings { width: 160, height: 90, ..Settings::default() };
 //! let mut renderer = Renderer::new(scene::builtin(), settings)?;
 //! let camera = renderer.scene().camera;
+//! // Bytes of sRGB, as windows and video encoders take them: a quarter of what linear light takes.
+//! let mut frame = Frame::<[u8; 4]>::default();
 //! for step in 0..2 {
 //!     let walked = (camera.target - camera.eye) * 0.05 * step as f32;
 //!     renderer.set_camera(Camera { eye: camera.eye + walked, ..camera })?;
-//!     renderer.render().save(format!("walk{step}.png"))?;
+//!     renderer.render_into(&mut frame);
+//!     let bytes: &[u8] = frame.pixels.as_flattened();
+//! #   assert_eq!((bytes.len(), bytes[3]), (160 * 90 * 4, 255));
 //! }
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
-//! [`load::load`] reads OBJ files, [`scene::builtin`] makes the scene of the README, [`Renderer`] keeps tables and buffers
-//! between frames, [`metrics::compare`] measures two pictures, [`golden::check`] is for tests that
-//! compare with an image in their repository, and [`filter`] has the filters alone, on derivatives of your own.
+//! [`golden::check`] is for tests that compare with a picture in their repository, and
+//! [`metrics::compare`] measures two pictures. `examples/` has these as programs.
 //!
 //! # The way of a pixel, one direction only
 //!
 //! ```text
-//! scene ─► geometry ─► raster ─► relief ─► filter ─► shade ─► frame
-//! Scene    ScreenTriangle  Quad      ViewSlope/Hit  Footprint→Rgb  Rgb   Frame
+//!  scene ──► geometry ──► raster ──► relief ──► footprint ──► light ──► filter ──► render
+//!  Scene     Screen-      Quad-      Height-    Footprints    Local-    colours    Frame
+//!            Triangle     Block      Field, hit Ellipses      Lights
+//!
+//!  ground floor, below all:   error   simd   texture   settings   frame
+//!  before the scene:          decode ──► load ──► Scene
 //! ```
 //!
-//! | module | what it does |
+//! | room | what it is |
 //! |---|---|
+//! | `error` | [`Error`] and [`Result`]: one line for a person, `source()` for a program |
+//! | `simd` | lanes: eight pixels, sixteen lines; the only file that names `wide` |
+//! | [`texture`] | stored texels: images, packed mip levels, wrap, sRGB |
+//! | `settings` | how a frame is drawn: [`Settings`], and [`Filter`] with its options |
+//! | [`frame`] | pixels and image files |
 //! | [`scene`] | what is drawn: meshes, materials, camera, lights; the built-in scene |
-//! | [`load`] | OBJ files, their MTL files and images, to a scene |
-//! | `decode` | image files to samples, within limits |
-//! | [`texture`] | stored texels: maps, packed mip levels, wrap, sRGB |
-//! | `geometry` | model space to screen triangles: projection, clipping, set-up in fixed point |
+//! | `decode` | bytes of image files to samples |
+//! | [`load`] | OBJ and MTL files to a scene, within limits |
+//! | `geometry` | model space to screen triangles: projection, culling, clipping, fixed point |
 //! | `raster` | screen triangles to quads: tiles, edge functions, depth, helper lanes |
-//! | `relief` | the height field with its pyramid of maxima, the displacement, the march to the first hit |
-//! | `filter` | footprint, formulas (2) and (3); ellipse, formula (1); all filters; the tables of the far field |
-//! | `shade` | filtered colour and normals, and lights, to linear colour |
-//! | `render` | a whole frame: one numbered step a stage |
-//! | [`frame`] | linear pixels, sRGB bytes, image files |
+//! | `relief` | height field, displacement, march to the hit; what a mip level loses |
+//! | `footprint` | formulas (2) and (3), the ellipse of formula (1), all rules for mip levels |
+//! | `light` | how bright a normal is |
+//! | [`filter`] | footprints to colours: all filters; the tables of the far field |
+//! | `render` | a whole frame, one numbered step a stage: [`Renderer`] |
 //! | [`inspect`] | what one pixel sees, and why: the paper's figures as numbers |
 //! | [`metrics`] | PSNR, SSIM, FLIP, largest error, heat map |
 //! | [`golden`] | pictures that tests must draw again |
-//! | `reference` | the scalar oracle that tests compare with |
-//! | [`invariants`] | what holds of the filters for any input |
-//! | `simd` | lane types; the only file that names `wide` |
+//! | `reference` | the oracle that tests compare with: definitions in f64 |
+//! | [`invariants`] | what holds of filters and coverage for any input |
 //!
-//! A stage imports only from stages to its left; `simd`, `texture` and `settings` lie below all. The stages are hidden from
-//! these pages and may change with any version.
+//! A stage imports only from stages to its left and from the ground floor; the last five stand
+//! outside, and no stage imports them. Rooms without a link are no part of the interface and may
+//! change with any version.
 //!
-//! The program is the package `basrelief-cli`. SIMD lanes are as wide as the crate is built for: see [`SIMD_LEVEL`] and
-//! the README.
+//! The program is the package `basrelief-cli`. SIMD lanes are as wide as the crate is built for: see
+//! [`SIMD_LEVEL`] and the README.
 #![forbid(unsafe_code)]
 
 pub mod filter;

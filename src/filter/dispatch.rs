@@ -121,7 +121,11 @@ impl Filter {
 }
 
 impl Prepared {
-    /// The linear RGB, unlit, of pixels by a filter, each by itself: footprints may be given in any order.
+    /// The linear RGB, unlit, of pixels by a filter. Footprints may be given in any order.
+    ///
+    /// Of each 256 that are given, [`Filter::Horizon`] sweeps those together that lie side by side,
+    /// which is faster, and lets a colour depend on its neighbours by up to a few steps of 255. One
+    /// footprint a call is swept by itself.
     pub fn colors(&self, filter: &Filter, footprints: &[Footprint]) -> Vec<[f32; 3]> {
         let pixels: Vec<_> = footprints.chunks(8).map(Footprints::pack).collect();
         let mut filtered = vec![Filtered::default(); pixels.len()];
