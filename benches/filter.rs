@@ -1,4 +1,5 @@
-//! Filters: one pixel by each, near (about a texel), grazing (a long thin ellipse) and far (many texels), and the tables.
+//! Filters: one pixel by each, near (about a texel), grazing (a long thin ellipse) and far (many
+//! texels), and the tables.
 
 use basrelief::filter::visible::{self, TexelSet};
 use basrelief::filter::{Batch, Filtered, Footprint, Footprints, Prepared, Scratch, ewa, points};
@@ -11,7 +12,8 @@ use std::hint::black_box;
 /// Vectors of pixels that the horizon may sweep at once.
 const NUM_VECTORS: usize = 32;
 
-/// A pixel in texture space, in texels of the base level: across and along the view, and down to the deepest relief.
+/// A pixel in texture space, in texels of the base level: across and along the view, and down to
+/// the deepest relief.
 struct View {
     name: &'static str,
     across: f32,
@@ -99,8 +101,12 @@ fn means(criterion: &mut Criterion) {
     for view in &VIEWS {
         let name = |filter: &str| format!("{filter}/{}", view.name);
         let base = street.base();
-        group.bench_function(name("nearest"), |b| everywhere(b, view, |p| points::nearest(base, p.hit)));
-        group.bench_function(name("bilinear"), |b| everywhere(b, view, |p| points::bilinear(base, p.hit)));
+        group.bench_function(name("nearest"), |b| {
+            everywhere(b, view, |p| points::nearest(base, p.hit))
+        });
+        group.bench_function(name("bilinear"), |b| {
+            everywhere(b, view, |p| points::bilinear(base, p.hit))
+        });
         group.bench_function(name("trilinear"), |b| {
             everywhere(b, view, |p| {
                 let sizes = levels::longest_sides(base, &Footprints::splat(p));
@@ -114,7 +120,8 @@ fn means(criterion: &mut Criterion) {
         group.bench_function(name("ewa"), |b| {
             everywhere(b, view, |p| ewa::mean(street, p, &Ewa::default(), true));
         });
-        for (how, visibility) in [("exact", Visibility::Exact), ("two_ended", Visibility::TwoEnded)] {
+        for (how, visibility) in [("exact", Visibility::Exact), ("two_ended", Visibility::TwoEnded)]
+        {
             let visible = Visible { visibility, ..Visible::default() };
             group.bench_function(name(&format!("visible_{how}")), |b| {
                 everywhere(b, view, |p| visible::mean(street, p, &visible, &mut set));
@@ -130,7 +137,11 @@ fn means(criterion: &mut Criterion) {
         });
     }
     let filter = Filter::default();
-    assert_eq!(filter.level(&prepared, &pixel(&BEYOND, [0.0; 2])).far_share, 1.0, "the tables give all");
+    assert_eq!(
+        filter.level(&prepared, &pixel(&BEYOND, [0.0; 2])).far_share,
+        1.0,
+        "the tables give all"
+    );
     group.bench_function(format!("far_field/{}", BEYOND.name), |b| {
         let mut filtering = Filtering::new(&prepared, filter);
         everywhere(b, &BEYOND, |p| filtering.one(p, false));
@@ -145,7 +156,11 @@ fn tables(criterion: &mut Criterion) {
     // With what levels lose in occlusion, which tables ask for.
     group.bench_function("far_field_build/1024", |b| {
         let prepared = || Prepared::new(street.clone());
-        b.iter_batched(prepared, |prepared| prepared.make_ready(&Filter::default(), false), BatchSize::PerIteration);
+        b.iter_batched(
+            prepared,
+            |prepared| prepared.make_ready(&Filter::default(), false),
+            BatchSize::PerIteration,
+        );
     });
     group.finish();
 }

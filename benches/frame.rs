@@ -1,7 +1,8 @@
 //! Whole frames of the built-in scene, small, by each filter, on all processors.
 
 use basrelief::{
-    Derivatives, Ewa, Filter, Frame, Horizon, Lighting, Rays, Renderer, Settings, Trilinear, Visibility, Visible, scene,
+    Derivatives, Ewa, Filter, Frame, Horizon, Lighting, Rays, Renderer, Settings, Trilinear,
+    Visibility, Visible, scene,
 };
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
@@ -32,7 +33,8 @@ fn frames(criterion: &mut Criterion) {
         ("truth_16", with(Filter::Truth(Rays { samples: 16 }))),
     ];
     for (name, settings) in cases {
-        let mut renderer = Renderer::new(scene::builtin(), settings).expect("the settings are valid");
+        let mut renderer =
+            Renderer::new(scene::builtin(), settings).expect("the settings are valid");
         let mut frame: Frame = Frame::default();
         group.bench_function(name, |b| b.iter(|| renderer.render_into(&mut frame)));
     }

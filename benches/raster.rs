@@ -1,4 +1,5 @@
-//! Geometry and raster: set-up, binning, and whole frames of a flat colour, for many small triangles and for one huge one.
+//! Geometry and raster: set-up, binning, and whole frames of a flat colour, for many small
+//! triangles and for one huge one.
 
 mod scenes;
 
@@ -35,7 +36,9 @@ fn binning(criterion: &mut Criterion) {
     for (name, scene) in cases() {
         let geometry = project(&scene, &settings);
         let mut bins = Bins::default();
-        group.bench_function(name, |b| b.iter(|| bins.fill(black_box(&geometry), &TileGrid::new(&settings))));
+        group.bench_function(name, |b| {
+            b.iter(|| bins.fill(black_box(&geometry), &TileGrid::new(&settings)))
+        });
     }
     group.finish();
 }
@@ -66,7 +69,15 @@ fn draw(criterion: &mut Criterion) {
             let mut rasterizer = Rasterizer::default();
             let mut frame: Frame = Frame::default();
             group.bench_function(format!("{name}_msaa{msaa}"), |b| {
-                b.iter(|| rasterizer.draw(black_box(&geometry), (&scene, &settings), &flat, &|| 0.0, &mut frame));
+                b.iter(|| {
+                    rasterizer.draw(
+                        black_box(&geometry),
+                        (&scene, &settings),
+                        &flat,
+                        &|| 0.0,
+                        &mut frame,
+                    )
+                });
             });
         }
     }

@@ -1,4 +1,5 @@
-//! How the time of a frame grows: with threads, pixels, triangles, texels and objects. Prints ratios of the fastest frames.
+//! How the time of a frame grows: with threads, pixels, triangles, texels and objects. Prints
+//! ratios of the fastest frames.
 //!
 //! `cargo bench --bench scaling`, on an idle machine; `-- NAME` runs what begins so.
 
@@ -47,7 +48,10 @@ fn time(scene: Scene, settings: Settings, num_threads: usize) -> f64 {
 }
 
 fn report(name: &str, wanted: &str, [less, more]: [f64; 2]) {
-    println!("{name:<40} {less:>9.2} ms {more:>9.2} ms   ratio {:.2}   wanted {wanted}", more / less);
+    println!(
+        "{name:<40} {less:>9.2} ms {more:>9.2} ms   ratio {:.2}   wanted {wanted}",
+        more / less
+    );
 }
 
 /// Two threads beside one.
@@ -65,29 +69,36 @@ fn threads() {
 /// Four times the pixels.
 fn pixels() {
     let road = textured(floor(), stones(1024, 1, 0.05), 1.0);
-    for (name, filter) in [("pixels/trilinear", trilinear()), ("pixels/horizon", Filter::default())] {
-        let times = [(960, 540), (1920, 1080)]
-            .map(|(width, height)| time(road.clone(), Settings { width, height, ..settings(filter) }, 1));
+    for (name, filter) in [("pixels/trilinear", trilinear()), ("pixels/horizon", Filter::default())]
+    {
+        let times = [(960, 540), (1920, 1080)].map(|(width, height)| {
+            time(road.clone(), Settings { width, height, ..settings(filter) }, 1)
+        });
         report(name, "at most 4.2", times);
     }
 }
 
 /// Ten times the triangles.
 fn triangles() {
-    let times =
-        [224, 707].map(|side| time(textured(terrain(side), stones(1024, 1, 0.0), 4.0), settings(trilinear()), 1));
+    let times = [224, 707].map(|side| {
+        time(textured(terrain(side), stones(1024, 1, 0.0), 4.0), settings(trilinear()), 1)
+    });
     report("triangles/trilinear", "at most 10", times);
 }
 
 /// Sixty-four times the texels, with footprints of as many texels.
 fn texels() {
-    let scene = |size: u32, depth: f32| textured(floor(), stones(size, 1, depth), 1024.0 / size as f32);
-    for (name, filter, depth) in [("texels/trilinear", trilinear(), 0.0), ("texels/horizon", sweeps(), 0.05)] {
+    let scene =
+        |size: u32, depth: f32| textured(floor(), stones(size, 1, depth), 1024.0 / size as f32);
+    for (name, filter, depth) in
+        [("texels/trilinear", trilinear(), 0.0), ("texels/horizon", sweeps(), 0.05)]
+    {
         let settings = settings(filter);
         report(
             name,
             "at most 1.3",
-            [1024, 8192].map(|size| time(scene(size, depth * 1024.0 / size as f32), settings.clone(), 1)),
+            [1024, 8192]
+                .map(|size| time(scene(size, depth * 1024.0 / size as f32), settings.clone(), 1)),
         );
     }
 }
@@ -103,7 +114,8 @@ fn many_objects() {
 }
 
 fn main() {
-    let wanted = std::env::args().skip(1).find(|argument| !argument.starts_with('-')).unwrap_or_default();
+    let wanted =
+        std::env::args().skip(1).find(|argument| !argument.starts_with('-')).unwrap_or_default();
     let all: [(&str, fn()); 5] = [
         ("threads", threads),
         ("pixels", pixels),

@@ -35,8 +35,10 @@ fn compare() -> Result<()> {
     // Many pixels a call. Each has a place, its derivatives to the right and down the screen, and
     // the direction from the eye: along u, along v, and down. All are in repeats of the texture.
     let slopes = [0.0, 0.5, 1.0, 2.0, 4.0];
-    let pixels: Vec<Footprint> =
-        slopes.iter().map(|&slope| ground.footprint([0.3, 0.7], [0.5, 0.0], [0.0, 0.1], [slope, 0.0, 1.0])).collect();
+    let pixels: Vec<Footprint> = slopes
+        .iter()
+        .map(|&slope| ground.footprint([0.3, 0.7], [0.5, 0.0], [0.0, 0.1], [slope, 0.0, 1.0]))
+        .collect();
 
     // The options of a filter travel with it.
     let paper = Filter::Visible(Visible::default());

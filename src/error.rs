@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 /// An error of the system or of another crate.
 type Cause = Box<dyn std::error::Error + Send + Sync>;
 
-/// Why something was refused. Each text is one line that names the file, line, option or scene part.
+/// Why something was refused. Each text is one line that names the file, line, option or scene
+/// part.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -75,7 +76,11 @@ impl Error {
     }
 
     /// A refusal of a file that asks for more than `option` allows.
-    pub(crate) fn limit(path: impl Into<PathBuf>, reason: impl ToString, option: &'static str) -> Self {
+    pub(crate) fn limit(
+        path: impl Into<PathBuf>,
+        reason: impl ToString,
+        option: &'static str,
+    ) -> Self {
         Self::Limit { path: path.into(), line: None, reason: reason.to_string(), option }
     }
 

@@ -15,9 +15,10 @@
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
-//! A picture that differs fails, and what was expected, what was drawn and where they differ is written to a folder `failed`
-//! beside the golden image (best kept out of the repository). With [`OnDifference::Accept`] it becomes the golden image
-//! instead. `basrelief compare --golden` does the same for files.
+//! A picture that differs fails, and what was expected, what was drawn and where they differ is
+//! written to a folder `failed` beside the golden image (best kept out of the repository). With
+//! [`OnDifference::Accept`] it becomes the golden image instead. `basrelief compare --golden` does
+//! the same for files.
 
 use crate::error::{Error, Result};
 use crate::frame::{Format, Frame, write_whole};
@@ -28,7 +29,8 @@ use std::path::{Path, PathBuf};
 /// How far a picture may be from its golden image. Default: not at all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Thresholds {
-    /// A pixel differs if its red, green, blue or opacity is off by more than this: sRGB-encoded, 0 to 1.
+    /// A pixel differs if its red, green, blue or opacity is off by more than this: sRGB-encoded, 0
+    /// to 1.
     pub tolerance: f32,
     /// Share of the pixels that may differ, 0 to 1.
     pub share: f32,
@@ -54,12 +56,12 @@ pub enum Verdict {
     Failed(String),
 }
 
-/// Checks that `frame` is the golden image in the file `golden`, whose extension is that of a [`Format`]. The frame is
-/// rounded as it would be in a file.
+/// Checks that `frame` is the golden image in the file `golden`, whose extension is that of a
+/// [`Format`]. The frame is rounded as it would be in a file.
 ///
 /// # Errors
-/// Says how the pictures differ, or that there is no golden image yet, and where to look; or names the file that cannot be
-/// read or written.
+/// Says how the pictures differ, or that there is no golden image yet, and where to look; or names
+/// the file that cannot be read or written.
 pub fn check(
     golden: impl AsRef<Path>,
     frame: &Frame,
@@ -74,8 +76,8 @@ pub fn check(
     }
 }
 
-/// Checks that an image file, given as its bytes, is the golden image in the file `golden`. Neither may have more than
-/// `max_pixels` pixels, of which each takes 32 bytes while it is read.
+/// Checks that an image file, given as its bytes, is the golden image in the file `golden`. Neither
+/// may have more than `max_pixels` pixels, of which each takes 32 bytes while it is read.
 ///
 /// # Errors
 /// Names the file that cannot be read or written, or that it has more than `max_pixels` pixels.
@@ -88,7 +90,8 @@ pub fn judge(
 ) -> Result<Verdict> {
     let evidence = Evidence::of(golden)?;
     let picture = Picture::from_bytes(actual, golden, max_pixels)?;
-    let expected = if golden.exists() { Some(Picture::open_within(golden, max_pixels)?) } else { None };
+    let expected =
+        if golden.exists() { Some(Picture::open_within(golden, max_pixels)?) } else { None };
     let reason = match &expected {
         Some(expected) => difference(expected, &picture, thresholds),
         None => Some("there is no golden image yet".into()),
@@ -106,7 +109,10 @@ pub fn judge(
 fn difference(expected: &Picture, actual: &Picture, thresholds: Thresholds) -> Option<String> {
     let [size, other] = [expected, actual].map(|picture| (picture.width(), picture.height()));
     if size != other {
-        return Some(format!("{}x{} pixels were expected, {}x{} drawn", size.0, size.1, other.0, other.1));
+        return Some(format!(
+            "{}x{} pixels were expected, {}x{} drawn",
+            size.0, size.1, other.0, other.1
+        ));
     }
     let Thresholds { tolerance, share } = thresholds;
     let errors = errors(expected, actual);
@@ -115,8 +121,10 @@ fn difference(expected: &Picture, actual: &Picture, thresholds: Thresholds) -> O
     if num as f64 <= f64::from(share) * 1.000_001 * errors.len() as f64 {
         return None;
     }
-    let (at, largest) =
-        errors.iter().enumerate().fold((0, 0.0), |a, (i, &error)| if error > a.1 { (i, error) } else { a });
+    let (at, largest) = errors
+        .iter()
+        .enumerate()
+        .fold((0, 0.0), |a, (i, &error)| if error > a.1 { (i, error) } else { a });
     let (x, y) = (at % size.0 as usize, at / size.0 as usize);
     let percent = |part: f64| format!("{:.4}%", part * 100.0);
     let found = percent(num as f64 / errors.len() as f64);
@@ -128,7 +136,9 @@ fn difference(expected: &Picture, actual: &Picture, thresholds: Thresholds) -> O
 
 /// The largest error of each pixel's four channels.
 fn errors(a: &Picture, b: &Picture) -> Vec<f32> {
-    let error = |(a, b): (&[f32; 4], &[f32; 4])| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    let error = |(a, b): (&[f32; 4], &[f32; 4])| {
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+    };
     a.pixels().iter().zip(b.pixels()).map(error).collect()
 }
 
@@ -143,7 +153,10 @@ struct Evidence {
 impl Evidence {
     fn of(golden: &Path) -> Result<Self> {
         let (Some(stem), Some(extension)) = (golden.file_stem(), golden.extension()) else {
-            return Err(Error::file(golden, "the name of a golden image must end in .png or another format"));
+            return Err(Error::file(
+                golden,
+                "the name of a golden image must end in .png or another format",
+            ));
         };
         let folder = golden.with_file_name("failed");
         let [stem, extension] = [stem, extension].map(|part| part.to_string_lossy());
@@ -153,7 +166,13 @@ impl Evidence {
         Ok(Self { folder, expected, actual, difference })
     }
 
-    fn write(&self, golden: &Path, actual: &[u8], expected: Option<&Picture>, picture: &Picture) -> Result<()> {
+    fn write(
+        &self,
+        golden: &Path,
+        actual: &[u8],
+        expected: Option<&Picture>,
+        picture: &Picture,
+    ) -> Result<()> {
         self.remove()?;
         fs::create_dir_all(&self.folder).map_err(|e| Error::caused(&self.folder, e))?;
         write_whole(&self.actual, actual)?;
@@ -169,8 +188,16 @@ impl Evidence {
     fn write_difference(&self, errors: Vec<f32>, picture: &Picture) -> Result<()> {
         let largest = errors.iter().copied().fold(1.0 / 255.0, f32::max);
         let opaque = |value: f32| [value, value, value, 1.0];
-        let errors = Picture::new(picture.width(), picture.height(), errors.into_iter().map(opaque).collect())?;
-        let none = Picture::new(picture.width(), picture.height(), vec![opaque(0.0); errors.pixels().len()])?;
+        let errors = Picture::new(
+            picture.width(),
+            picture.height(),
+            errors.into_iter().map(opaque).collect(),
+        )?;
+        let none = Picture::new(
+            picture.width(),
+            picture.height(),
+            vec![opaque(0.0); errors.pixels().len()],
+        )?;
         metrics::heat_map(&errors, &none, largest)?.save(&self.difference)
     }
 
@@ -178,7 +205,9 @@ impl Evidence {
     fn remove(&self) -> Result<()> {
         for file in [&self.expected, &self.actual, &self.difference] {
             match fs::remove_file(file) {
-                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::caused(file, e)),
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(Error::caused(file, e));
+                }
                 _ => {}
             }
         }
@@ -202,8 +231,13 @@ mod tests {
     fn both_thresholds_count() {
         let expected = picture(&[]);
         let actual = picture(&[(3, 0.25), (42, -0.125)]);
-        let differs = |tolerance, share| difference(&expected, &actual, Thresholds { tolerance, share });
-        assert!(differs(0.25, 0.0).is_none() && differs(0.0, 0.02).is_none() && differs(0.2, 0.01).is_none());
+        let differs =
+            |tolerance, share| difference(&expected, &actual, Thresholds { tolerance, share });
+        assert!(
+            differs(0.25, 0.0).is_none()
+                && differs(0.0, 0.02).is_none()
+                && differs(0.2, 0.01).is_none()
+        );
         for (tolerance, share) in [(0.0, 0.0), (0.24, 0.0), (0.0, 0.019), (0.1, 0.01)] {
             let reason = differs(tolerance, share).unwrap();
             assert!(reason.contains("x 3, y 0") && reason.contains("0.2500"), "{reason}");

@@ -143,8 +143,8 @@
 //! outside, and no stage imports them. Rooms without a link are no part of the interface and may
 //! change with any version.
 //!
-//! The program is the package `basrelief-cli`. SIMD lanes are as wide as the crate is built for: see
-//! [`SIMD_LEVEL`] and the README.
+//! The program is the package `basrelief-cli`. SIMD lanes are as wide as the crate is built for:
+//! see [`SIMD_LEVEL`] and the README.
 #![forbid(unsafe_code)]
 
 pub mod filter;
@@ -159,7 +159,8 @@ pub mod texture;
 
 mod decode;
 mod error;
-// The stages are public to the crate's own tests, benches and fuzz targets, and no part of the interface.
+// The stages are public to the crate's own tests, benches and fuzz targets, and no part of the
+// interface.
 #[doc(hidden)]
 pub mod footprint;
 #[doc(hidden)]
@@ -182,7 +183,7 @@ pub use frame::Frame;
 pub use render::{DrawnPixel, Renderer, Stats, render};
 pub use scene::{Camera, Light, Material, Mesh, Scene};
 pub use settings::{
-    Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, Lighting, RECONSTRUCTION, Rays, Region, Settings,
-    Trilinear, Visibility, Visible,
+    Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, Lighting, RECONSTRUCTION, Rays,
+    Region, Settings, Trilinear, Visibility, Visible,
 };
 pub use simd::LEVEL as SIMD_LEVEL;

@@ -1,8 +1,9 @@
 //! Lane types and the few helpers on them. The only file that names `wide`.
 //!
-//! Two readings of lanes: in `raster` and `relief` a lane is a *pixel* (two 2x2 quads), in `filter` a lane is a *texel*.
-//! For the same bytes on every machine: `a * b + c` and never `mul_add`, `1.0 / x` and never `recip`, sums of lanes in
-//! one fixed order ([`sum`]), minima and maxima by [`f32x8::fast_min`] and [`f32x8::fast_max`] on values that are not NaN.
+//! Two readings of lanes: in `raster` and `relief` a lane is a *pixel* (two 2x2 quads), in `filter`
+//! a lane is a *texel*. For the same bytes on every machine: `a * b + c` and never `mul_add`, `1.0
+//! / x` and never `recip`, sums of lanes in one fixed order ([`sum`]), minima and maxima by
+//! [`f32x8::fast_min`] and [`f32x8::fast_max`] on values that are not NaN.
 
 use wide::f32x4;
 pub use wide::{f32x8, f32x16, f64x8, i32x8, i32x16, u32x8, u32x16};
@@ -112,7 +113,8 @@ pub fn high_halves(words: u32x16) -> f32x16 {
     f32x16::from_i32x16(wide::bytemuck::cast(words >> 16_u32))
 }
 
-/// `exp(-x)` for `0 <= x <= 4.5`, off by less than 1e-5: an eighth of x by Taylor's series, then three squarings.
+/// `exp(-x)` for `0 <= x <= 4.5`, off by less than 1e-5: an eighth of x by Taylor's series, then
+/// three squarings.
 pub fn exp_negative(x: f32x8) -> f32x8 {
     let y = x * -0.125;
     let e = ((((y * (1.0 / 120.0) + 1.0 / 24.0) * y + 1.0 / 6.0) * y + 0.5) * y + 1.0) * y + 1.0;
@@ -121,26 +123,32 @@ pub fn exp_negative(x: f32x8) -> f32x8 {
     e4 * e4
 }
 
-/// Of the words from `start` on, those with the given numbers and the ones after them. Numbers ascend from 0 or 1, each
-/// at most 2 more than the one before.
+/// Of the words from `start` on, those with the given numbers and the ones after them. Numbers
+/// ascend from 0 or 1, each at most 2 more than the one before.
 #[inline(always)]
 pub fn pick_words(words: &[u32], start: usize, numbers: i32x16) -> [u32x16; 2] {
-    debug_assert!((0..=1).contains(&numbers.as_array()[0]) && (0..31).contains(&numbers.as_array()[15]), "{numbers:?}");
+    debug_assert!(
+        (0..=1).contains(&numbers.as_array()[0]) && (0..31).contains(&numbers.as_array()[15]),
+        "{numbers:?}"
+    );
     if cfg!(target_feature = "avx512f") {
         let run = |start: usize| {
-            let lanes: &[u32; 16] = words[start..start + 16].try_into().expect("a slice of sixteen");
+            let lanes: &[u32; 16] =
+                words[start..start + 16].try_into().expect("a slice of sixteen");
             u32x16::new(*lanes)
         };
         let runs = [run(start), run(start + 16)];
         let numbers: u32x16 = wide::bytemuck::cast(numbers);
-        [numbers, numbers + u32x16::splat(1)].map(|numbers| wide::ShuffleExt::shuffle(runs, numbers))
+        [numbers, numbers + u32x16::splat(1)]
+            .map(|numbers| wide::ShuffleExt::shuffle(runs, numbers))
     } else {
         // Eight at a time: each half lies within sixteen words of its own.
         let halves: [i32x8; 2] = wide::bytemuck::cast(numbers);
         let [[a, b], [c, d]] = halves.map(|numbers| {
             let first = numbers.as_array()[0];
             let run = |start: usize| {
-                let lanes: &[u32; 8] = words[start..start + 8].try_into().expect("a slice of eight");
+                let lanes: &[u32; 8] =
+                    words[start..start + 8].try_into().expect("a slice of eight");
                 u32x8::new(*lanes)
             };
             let start = start + first as usize;
@@ -151,8 +159,8 @@ pub fn pick_words(words: &[u32], start: usize, numbers: i32x16) -> [u32x16; 2] {
     }
 }
 
-/// Of sixteen words in a row, those with the given numbers, 0 to 15, by a selection of two: faster than what shuffles of two
-/// vectors are made of.
+/// Of sixteen words in a row, those with the given numbers, 0 to 15, by a selection of two: faster
+/// than what shuffles of two vectors are made of.
 #[inline(always)]
 fn pick_eight(words: [u32x8; 2], numbers: i32x8) -> u32x8 {
     let is_second: i32x8 = numbers.simd_gt(i32x8::splat(7));
@@ -241,7 +249,8 @@ pub fn halves(words: u32x16) -> [u32x8; 2] {
     wide::bytemuck::cast(words)
 }
 
-/// Interpolates between packed texels, both 16-bit halves of a word at once; halves must be below 32768.
+/// Interpolates between packed texels, both 16-bit halves of a word at once; halves must be below
+/// 32768.
 #[derive(Clone, Copy, Debug)]
 pub struct Blend(wide::i16x16);
 
@@ -254,7 +263,8 @@ impl Blend {
 
     /// The words between `near` and `far`, each half within those of the two.
     pub fn mix(self, [near, far]: [u32x8; 2]) -> u32x8 {
-        let (near, far): (wide::i16x16, wide::i16x16) = (wide::bytemuck::cast(near), wide::bytemuck::cast(far));
+        let (near, far): (wide::i16x16, wide::i16x16) =
+            (wide::bytemuck::cast(near), wide::bytemuck::cast(far));
         wide::bytemuck::cast(near + (far - near).mul_scale_round(self.0))
     }
 }

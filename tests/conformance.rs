@@ -1,5 +1,6 @@
-//! Cases of public conformance suites, by their parameters: the fill rules of OpenGL ES 3, the anisotropy and explicit
-//! levels of Vulkan, the anisotropy of WebGPU, the odd aspect ratios of `OpenImageIO`, the magnified lines of pbrt.
+//! Cases of public conformance suites, by their parameters: the fill rules of OpenGL ES 3, the
+//! anisotropy and explicit levels of Vulkan, the anisotropy of WebGPU, the odd aspect ratios of
+//! `OpenImageIO`, the magnified lines of pbrt.
 
 mod common;
 
@@ -25,14 +26,20 @@ fn square(side: u32) -> Settings {
 
 // ---- dEQP-GLES3.functional.rasterization.fill_rules
 
-/// A quad of `half` its side, turned, around a centre in device coordinates, each corner with its own w.
+/// A quad of `half` its side, turned, around a centre in device coordinates, each corner with its
+/// own w.
 fn quad(center: Vec2, half: f32, degrees: f32, w: [f32; 4]) -> Vec<Vec3> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let corner = |x: f32, y: f32, w: f32| {
         let [x, y] = [half * (x * cos - y * sin) + center.x, half * (x * sin + y * cos) + center.y];
         Vec3::new(x * w, y * w, -w)
     };
-    vec![corner(-1.0, -1.0, w[0]), corner(1.0, -1.0, w[1]), corner(1.0, 1.0, w[2]), corner(-1.0, 1.0, w[3])]
+    vec![
+        corner(-1.0, -1.0, w[0]),
+        corner(1.0, -1.0, w[1]),
+        corner(1.0, 1.0, w[2]),
+        corner(-1.0, 1.0, w[3]),
+    ]
 }
 
 const DIAGONAL: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
@@ -44,23 +51,36 @@ fn drawn(quads: &[(Vec<Vec3>, [[u32; 3]; 2])], settings: &Settings) -> Vec<u8> {
         Mesh::new(corners.clone(), vec![], vec![], triangles.to_vec())
     };
     let meshes = quads.iter().map(mesh).collect();
-    let scene = Scene { meshes, materials: vec![Material::default()], camera: clip_camera(), ..Scene::default() };
+    let scene = Scene {
+        meshes,
+        materials: vec![Material::default()],
+        camera: clip_camera(),
+        ..Scene::default()
+    };
     scene.validate().expect("a valid scene");
     hit_counts(&project(&scene, settings), settings)
 }
 
-/// 4 x 4 turned quads on 256 x 256 pixels, twice: plain, with the other diagonal, and with w of 0.1 to 4.
+/// 4 x 4 turned quads on 256 x 256 pixels, twice: plain, with the other diagonal, and with w of 0.1
+/// to 4.
 #[test]
 fn fill_rules_of_a_grid_of_quads() {
     let mut random = Random(0xabcd);
-    for (name, triangles, is_projected) in
-        [("basic", DIAGONAL, false), ("reversed", OTHER_DIAGONAL, false), ("projected", DIAGONAL, true)]
-    {
+    for (name, triangles, is_projected) in [
+        ("basic", DIAGONAL, false),
+        ("reversed", OTHER_DIAGONAL, false),
+        ("projected", DIAGONAL, true),
+    ] {
         for iteration in 0..2 {
             let quads: Vec<_> = (0..16)
                 .map(|i| {
-                    let center = Vec2::new((i % 4) as f32 + 0.5, (i / 4) as f32 + 0.5) / 4.0 * 2.0 - 1.0;
-                    let w = if is_projected { [0; 4].map(|_| random.within(0.1, 4.0)) } else { [1.0; 4] };
+                    let center =
+                        Vec2::new((i % 4) as f32 + 0.5, (i / 4) as f32 + 0.5) / 4.0 * 2.0 - 1.0;
+                    let w = if is_projected {
+                        [0; 4].map(|_| random.within(0.1, 4.0))
+                    } else {
+                        [1.0; 4]
+                    };
                     let degrees = (iteration * 16 + i) as f32 / 32.0 * 360.0;
                     (quad(center, 0.15, degrees, w), triangles)
                 })
@@ -68,22 +88,31 @@ fn fill_rules_of_a_grid_of_quads() {
             let counts = drawn(&quads, &square(256));
             assert!(counts.iter().all(|&count| count <= 1), "{name}: a pixel is drawn twice");
             let num: usize = counts.iter().map(|&count| usize::from(count)).sum();
-            // A quad has a side of 0.3 / 2 x 256 = 38.4 pixels; the edges may take or leave a pixel along them.
+            // A quad has a side of 0.3 / 2 x 256 = 38.4 pixels; the edges may take or leave a pixel
+            // along them.
             let area = 16.0 * 38.4 * 38.4;
-            assert!((num as f32 - area).abs() < 16.0 * 38.4 * 0.5, "{name}: {num} pixels of {area}");
+            assert!(
+                (num as f32 - area).abs() < 16.0 * 38.4 * 0.5,
+                "{name}: {num} pixels of {area}"
+            );
         }
     }
 }
 
-/// One quad larger than a target of 64 x 64 pixels at 15 rotations: covers all of it, or a part, once.
+/// One quad larger than a target of 64 x 64 pixels at 15 rotations: covers all of it, or a part,
+/// once.
 #[test]
 fn fill_rules_of_clipped_quads() {
     for half in [2.0, 1.0] {
         for triangles in [DIAGONAL, OTHER_DIAGONAL] {
             for i in 0..15 {
                 let degrees = i as f32 / 15.0 * 90.0;
-                let counts = drawn(&[(quad(Vec2::ZERO, half, degrees, [1.0; 4]), triangles)], &square(64));
-                assert!(counts.iter().all(|&count| count <= 1), "{degrees} degrees: a pixel is drawn twice");
+                let counts =
+                    drawn(&[(quad(Vec2::ZERO, half, degrees, [1.0; 4]), triangles)], &square(64));
+                assert!(
+                    counts.iter().all(|&count| count <= 1),
+                    "{degrees} degrees: a pixel is drawn twice"
+                );
                 let num_holes = counts.iter().filter(|&&count| count == 0).count();
                 assert!(half < 2.0 || num_holes == 0, "{degrees} degrees: {num_holes} holes");
             }
@@ -93,23 +122,30 @@ fn fill_rules_of_clipped_quads() {
 
 // ---- dEQP-VK.texture.filtering_anisotropy
 
-/// Limits of 2, 4, 8 and 16, with mip levels and without, for each filter that has a limit: 128 x 128 pixels of a
-/// 128 x 128 grid, w from 3.5 on the left to 1 on the right.
+/// Limits of 2, 4, 8 and 16, with mip levels and without, for each filter that has a limit: 128 x
+/// 128 pixels of a 128 x 128 grid, w from 3.5 on the left to 1 on the right.
 #[test]
 fn anisotropic_frames_are_close_to_isotropic_ones_and_differ() {
     let cell = |c: u32| c / 16;
-    let grid = ColorImage::from_fn(128, 128, |x, y| [if (cell(x) + cell(y)) % 2 == 0 { 0.0 } else { 1.0 }; 3]);
+    let grid = ColorImage::from_fn(128, 128, |x, y| {
+        [if (cell(x) + cell(y)) % 2 == 0 { 0.0 } else { 1.0 }; 3]
+    });
     let maps = SurfaceMaps { albedo: Some(grid), wrap: Wrap::Clamp, ..Default::default() };
     let surface = Arc::new(Surface::new(maps).expect("valid maps"));
     for filter in limited_filters() {
         for texel_budget in [0, 64] {
             let draw = |max_anisotropy: f32| {
-                let corners = [[-3.5, -1.0, 3.5], [3.5, -1.0, 1.0], [3.5, 1.0, 1.0], [-3.5, 1.0, 3.5]];
+                let corners =
+                    [[-3.5, -1.0, 3.5], [3.5, -1.0, 1.0], [3.5, 1.0, 1.0], [-3.5, 1.0, 3.5]];
                 let positions = corners.map(|[x, y, w]| Vec3::new(x, y, -w)).to_vec();
-                let tex_coords = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from).to_vec();
+                let tex_coords =
+                    [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from).to_vec();
                 let scene = Scene {
                     meshes: vec![Mesh::new(positions, tex_coords, vec![], DIAGONAL.to_vec())],
-                    materials: vec![Material { surface: Some(surface.clone()), ..Material::default() }],
+                    materials: vec![Material {
+                        surface: Some(surface.clone()),
+                        ..Material::default()
+                    }],
                     camera: clip_camera(),
                     ..Scene::default()
                 };
@@ -118,11 +154,16 @@ fn anisotropic_frames_are_close_to_isotropic_ones_and_differ() {
             };
             let isotropic = draw(1.0);
             for limit in [2.0, 4.0, 8.0, 16.0] {
-                let errors = draw(limit).into_iter().zip(&isotropic).map(|(a, b)| (a[0] - b[0]).abs());
-                let (sum, most) = errors.fold((0.0, 0.0_f32), |(sum, most), e| (sum + e, most.max(e)));
+                let errors =
+                    draw(limit).into_iter().zip(&isotropic).map(|(a, b)| (a[0] - b[0]).abs());
+                let (sum, most) =
+                    errors.fold((0.0, 0.0_f32), |(sum, most), e| (sum + e, most.max(e)));
                 let mean = sum / (128.0 * 128.0);
-                // The suite's own comparison forgives shifts by a pixel, so its bound of 0.05 is not one of the mean.
-                let what = format!("{filter:?}, budget {texel_budget}, limit {limit}: mean {mean}, most {most}");
+                // The suite's own comparison forgives shifts by a pixel, so its bound of 0.05 is
+                // not one of the mean.
+                let what = format!(
+                    "{filter:?}, budget {texel_budget}, limit {limit}: mean {mean}, most {most}"
+                );
                 println!("{what}");
                 assert!(mean < 0.05 && most > 0.02, "{what}");
             }
@@ -145,18 +186,25 @@ fn higher_limits_take_finer_levels() {
     };
     for aspect in [4.0, 8.0, 16.0] {
         let levels = [1.0, 2.0, 4.0, 8.0, 16.0, 1024.0].map(|limit| level(aspect, limit));
-        assert!(levels.is_sorted_by(|a, b| a >= b) && levels[0] > levels[4], "{aspect}: {levels:?}");
+        assert!(
+            levels.is_sorted_by(|a, b| a >= b) && levels[0] > levels[4],
+            "{aspect}: {levels:?}"
+        );
         assert_eq!(levels[4], levels[5], "{aspect}: a limit past the ratio changes the level");
     }
     assert_eq!(level(1.0, 1.0), level(1.0, 16.0));
 }
 
-/// The footprint is long in the right direction: stripes along it stay, stripes across it become their mean.
+/// The footprint is long in the right direction: stripes along it stay, stripes across it become
+/// their mean.
 #[test]
 fn footprints_are_long_where_the_derivative_is() {
     let stripes = |along_u: bool| {
-        let color = |x: u32, y: u32| [if (if along_u { y } else { x }) / 8 % 2 == 0 { 0.0 } else { 1.0 }; 3];
-        let maps = SurfaceMaps { albedo: Some(ColorImage::from_fn(64, 64, color)), ..Default::default() };
+        let color = |x: u32, y: u32| {
+            [if (if along_u { y } else { x }) / 8 % 2 == 0 { 0.0 } else { 1.0 }; 3]
+        };
+        let maps =
+            SurfaceMaps { albedo: Some(ColorImage::from_fn(64, 64, color)), ..Default::default() };
         Surface::new(maps).expect("valid maps")
     };
     for filter in limited_filters() {
@@ -169,7 +217,10 @@ fn footprints_are_long_where_the_derivative_is() {
             (color(&stripes(true), &along_u), color(&stripes(false), &along_u)),
             (color(&stripes(false), &along_v), color(&stripes(true), &along_v)),
         ] {
-            assert!(kept < 0.1 && (blurred - 0.5).abs() < 0.1, "{filter:?}: {kept} along, {blurred} across");
+            assert!(
+                kept < 0.1 && (blurred - 0.5).abs() < 0.1,
+                "{filter:?}: {kept} along, {blurred} across"
+            );
         }
     }
 }
@@ -195,15 +246,20 @@ fn bilinear(surface: &Surface, level: usize, place: [f32; 2]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[i] + (b[i] - a[i]) * fy)
 }
 
-/// A 16 x 16 texture, clamped, at levels -1 to 2 in halves, and at pairs of derivatives of 0 to 2 texels.
+/// A 16 x 16 texture, clamped, at levels -1 to 2 in halves, and at pairs of derivatives of 0 to 2
+/// texels.
 #[test]
 fn explicit_levels_and_derivatives() {
     let surface = flat_surface(16, 16, Wrap::Clamp, 7);
     let check = |place: [f32; 2], size: f32, what: &str| {
-        // Between two levels the blend is linear in the size, which is within 0.09 of linear in its logarithm.
+        // Between two levels the blend is linear in the size, which is within 0.09 of linear in its
+        // logarithm.
         let level = size.max(1.0).log2().floor();
         let blend = f64::from(size.max(1.0) / level.exp2() - 1.0);
-        let (fine, coarse) = (bilinear(&surface, level as usize, place), bilinear(&surface, level as usize + 1, place));
+        let (fine, coarse) = (
+            bilinear(&surface, level as usize, place),
+            bilinear(&surface, level as usize + 1, place),
+        );
         let found = points::trilinear(&surface, place, size).color;
         for i in 0..3 {
             let expected = fine[i] + (coarse[i] - fine[i]) * blend;
@@ -218,7 +274,8 @@ fn explicit_levels_and_derivatives() {
         }
         for [dx, dy] in [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0], [2.0, 2.0_f32]] {
             let pixel = Footprint::new(place, [dx / 16.0, 0.0], [0.0, dy / 16.0], [0.0; 2]);
-            let size = levels::longest_sides(surface.base(), &Footprints::splat(&pixel)).as_array()[0];
+            let size =
+                levels::longest_sides(surface.base(), &Footprints::splat(&pixel)).as_array()[0];
             assert_eq!(size, dx.max(dy));
             check(place, size, &format!("derivatives {dx}, {dy}"));
         }
@@ -227,12 +284,17 @@ fn explicit_levels_and_derivatives() {
 
 // ---- OpenImageIO testsuite: texture-skinny, texture-fat
 
-/// A texture stretched 4 times along one axis, texel by texel, looks like the plain one where footprints span many texels.
+/// A texture stretched 4 times along one axis, texel by texel, looks like the plain one where
+/// footprints span many texels.
 #[test]
 fn skinny_and_fat_textures_look_like_square_ones() {
-    let color = |x: u32, y: u32| [((x * 7 + y * 3) % 16) as f32 / 15.0, (x % 4) as f32 / 3.0, (y % 4) as f32 / 3.0];
+    let color = |x: u32, y: u32| {
+        [((x * 7 + y * 3) % 16) as f32 / 15.0, (x % 4) as f32 / 3.0, (y % 4) as f32 / 3.0]
+    };
     let surface = |scale: [u32; 2]| {
-        let image = ColorImage::from_fn(16 * scale[0], 16 * scale[1], |x, y| color(x / scale[0], y / scale[1]));
+        let image = ColorImage::from_fn(16 * scale[0], 16 * scale[1], |x, y| {
+            color(x / scale[0], y / scale[1])
+        });
         Surface::new(SurfaceMaps { albedo: Some(image), ..Default::default() }).expect("valid maps")
     };
     let (plain, skinny, fat) = (surface([1, 1]), surface([4, 1]), surface([1, 4]));
@@ -245,8 +307,12 @@ fn skinny_and_fat_textures_look_like_square_ones() {
             let center = [0; 2].map(|_| random.within(0.0, 1.0));
             let [dx, dy] = [random.within(0.3, 0.6), random.within(0.3, 0.6)];
             let pixel = Footprint::new(center, [dx, 0.0], [0.0, dy], [0.0; 2]);
-            let [a, b, c] = [&plain, &skinny, &fat].map(|surface| filtered(surface, &pixel, &filter));
-            let errors = [b, c].iter().flat_map(|other| (0..3).map(|i| (a[i] - other[i]).abs())).collect::<Vec<_>>();
+            let [a, b, c] =
+                [&plain, &skinny, &fat].map(|surface| filtered(surface, &pixel, &filter));
+            let errors = [b, c]
+                .iter()
+                .flat_map(|other| (0..3).map(|i| (a[i] - other[i]).abs()))
+                .collect::<Vec<_>>();
             worst = errors.into_iter().fold(worst, f32::max);
         }
         println!("{filter:?}: {worst}");

@@ -1,7 +1,7 @@
 //! Coverage: every sample of a mesh of shared edges belongs to exactly one triangle.
 //!
-//! Scenes are given in pixels: a corner `[x, y, w]` lands on the screen at (x, y), w in front of the eye. Pictures show
-//! how many triangles hit each pixel: '.' none, '1' one, '2' two.
+//! Scenes are given in pixels: a corner `[x, y, w]` lands on the screen at (x, y), w in front of
+//! the eye. Pictures show how many triangles hit each pixel: '.' none, '1' one, '2' two.
 
 use basrelief::geometry::{Geometry, ScreenTriangle, project};
 use basrelief::raster::{QuadPair, RasterStats, draw, hit_counts};
@@ -24,11 +24,20 @@ fn world([x, y, w]: Corner, settings: &Settings) -> Vec3 {
 }
 
 fn scene_of(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Scene {
-    let tex_coords = positions.iter().map(|p| Vec2::new(p.x, p.y).clamp(Vec2::splat(-1e5), Vec2::splat(1e5))).collect();
+    let tex_coords = positions
+        .iter()
+        .map(|p| Vec2::new(p.x, p.y).clamp(Vec2::splat(-1e5), Vec2::splat(1e5)))
+        .collect();
     Scene {
         meshes: vec![Mesh::new(positions, tex_coords, vec![], triangles)],
         materials: vec![Material::default()],
-        camera: Camera { eye: Vec3::ZERO, target: -Vec3::Z, up: Vec3::Y, fov_degrees: 90.0, near: 0.01 },
+        camera: Camera {
+            eye: Vec3::ZERO,
+            target: -Vec3::Z,
+            up: Vec3::Y,
+            fov_degrees: 90.0,
+            near: 0.01,
+        },
         ..Scene::default()
     }
 }
@@ -69,7 +78,10 @@ fn a_triangle_takes_the_centres_inside() {
     assert_picture(
         &[[1.0, 1.0, 1.0], [1.0, 7.0, 1.0], [7.0, 1.0, 1.0]],
         &[[0, 1, 2]],
-        &["........", ".11111..", ".1111...", ".111....", ".11.....", ".1......", "........", "........"],
+        &[
+            "........", ".11111..", ".1111...", ".111....", ".11.....", ".1......", "........",
+            "........",
+        ],
     );
 }
 
@@ -78,7 +90,10 @@ fn top_and_left_edges_through_centres_count() {
     assert_picture(
         &[[1.5, 1.5, 1.0], [1.5, 5.5, 1.0], [5.5, 5.5, 1.0], [5.5, 1.5, 1.0]],
         &[[0, 1, 2], [0, 2, 3]],
-        &["........", ".1111...", ".1111...", ".1111...", ".1111...", "........", "........", "........"],
+        &[
+            "........", ".1111...", ".1111...", ".1111...", ".1111...", "........", "........",
+            "........",
+        ],
     );
 }
 
@@ -87,7 +102,10 @@ fn overlapping_triangles_both_count() {
     assert_picture(
         &[[0.0, 0.0, 1.0], [0.0, 4.0, 1.0], [4.0, 0.0, 1.0], [4.0, 4.0, 1.0]],
         &[[0, 1, 2], [0, 1, 3]],
-        &["111.....", "21......", "21......", "111.....", "........", "........", "........", "........"],
+        &[
+            "111.....", "21......", "21......", "111.....", "........", "........", "........",
+            "........",
+        ],
     );
 }
 
@@ -97,7 +115,10 @@ fn what_misses_every_centre_is_dropped() {
     let corners = [[2.6, 2.6, 1.0], [2.6, 3.4, 1.0], [3.4, 2.6, 1.0]];
     assert_eq!(project(&scene(&corners, &[[0, 1, 2]], &settings), &settings).num_triangles(), 0);
     let corners = [[2.6, 2.6, 1.0], [2.6, 3.4, 1.0], [2.7, 3.0, 1.0], [3.6, 3.6, 1.0]];
-    assert_eq!(project(&scene(&corners, &[[0, 1, 2], [0, 3, 1]], &settings), &settings).num_triangles(), 1);
+    assert_eq!(
+        project(&scene(&corners, &[[0, 1, 2], [0, 3, 1]], &settings), &settings).num_triangles(),
+        1
+    );
 }
 
 /// A fan of `num` triangles around a centre.
@@ -117,7 +138,12 @@ fn fans_at_every_rotation_hit_once() {
         let (corners, triangles) = fan([18.5, 14.5], 12.0, 7, f64::from(degree));
         let inner = 12.0 * (std::f64::consts::PI / 7.0).cos() - 0.01;
         let counts = counts(&corners, &triangles, &settings);
-        assert_once(&counts, 37, |x, y| (x - 18.5).hypot(y - 14.5) < inner, &format!("{degree} degrees"));
+        assert_once(
+            &counts,
+            37,
+            |x, y| (x - 18.5).hypot(y - 14.5) < inner,
+            &format!("{degree} degrees"),
+        );
     }
 }
 
@@ -133,12 +159,18 @@ fn grids_at_every_rotation_hit_once() {
         };
         let corners: Vec<_> = (0..14 * 18).map(corner).collect();
         let cells = (0..17 * 14).filter(|i| i % 14 != 13);
-        let triangles: Vec<_> = cells.flat_map(|i| [[i, i + 14, i + 1], [i + 1, i + 14, i + 15]]).collect();
+        let triangles: Vec<_> =
+            cells.flat_map(|i| [[i, i + 14, i + 1], [i + 1, i + 14, i + 15]]).collect();
         let inside = |x: f64, y: f64| {
             let (x, y) = (x - 16.5, y - 15.5);
             (x * cos + y * sin).abs() < 16.24 && (y * cos - x * sin).abs() < 12.74
         };
-        assert_once(&counts(&corners, &triangles, &settings), 33, inside, &format!("{degree} degrees"));
+        assert_once(
+            &counts(&corners, &triangles, &settings),
+            33,
+            inside,
+            &format!("{degree} degrees"),
+        );
     }
 }
 
@@ -163,17 +195,22 @@ fn a_floor_whose_corners_lie_behind_the_eye_fills_below_the_horizon() {
     for diagonal in [[[0, 1, 2], [0, 2, 3]], [[0, 1, 3], [1, 2, 3]]] {
         for size in [10.0_f32, 1e3, 1e6, 1e9] {
             let corners = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
-            let positions = corners.map(|(x, z)| Vec3::new(x * size * 2.0, -1.0, z * size)).to_vec();
+            let positions =
+                corners.map(|(x, z)| Vec3::new(x * size * 2.0, -1.0, z * size)).to_vec();
             let geometry = project(&scene_of(positions, diagonal.to_vec()), &settings);
             let counts = hit_counts(&geometry, &settings);
             let far = 24.0 + 24.0 / f64::from(size) + 0.01;
             assert_once(&counts, 64, |_, y| y > far, &format!("size {size}"));
-            assert!(counts[..64 * 24].iter().all(|&count| count == 0), "size {size} draws above the horizon");
+            assert!(
+                counts[..64 * 24].iter().all(|&count| count == 0),
+                "size {size} draws above the horizon"
+            );
         }
     }
 }
 
-/// A small generator, so that the cases are the same everywhere (Steele and others 2014, `SplitMix64`).
+/// A small generator, so that the cases are the same everywhere (Steele and others 2014,
+/// `SplitMix64`).
 struct Random(u64);
 
 impl Random {
@@ -185,8 +222,8 @@ impl Random {
     }
 }
 
-/// Two triangles on either diagonal and in mixed windings; the frame lies within some quads, across borders of others,
-/// and beyond an extent of 65536 pixels corners are clipped.
+/// Two triangles on either diagonal and in mixed windings; the frame lies within some quads, across
+/// borders of others, and beyond an extent of 65536 pixels corners are clipped.
 #[test]
 fn random_projected_quads_hit_once() {
     let settings = settings(40, 30);
@@ -205,10 +242,16 @@ fn random_projected_quads_hit_once() {
             .collect();
         for triangles in [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [3, 0, 1]], [[0, 2, 1], [0, 2, 3]]] {
             let margin = 0.02 + extent * 1e-5;
-            let inside = |x: f64, y: f64| is_convex(&corners) && is_within(&corners, [x, y], margin);
+            let inside =
+                |x: f64, y: f64| is_convex(&corners) && is_within(&corners, [x, y], margin);
             if is_convex(&corners) {
                 let counts = counts(&corners, &triangles, &settings);
-                assert_once(&counts, 40, inside, &format!("case {case}, extent {extent}, {triangles:?}"));
+                assert_once(
+                    &counts,
+                    40,
+                    inside,
+                    &format!("case {case}, extent {extent}, {triangles:?}"),
+                );
             }
         }
     }
@@ -220,15 +263,22 @@ fn random_quads_through_the_near_plane_hit_at_most_once() {
     let settings = settings(40, 30);
     let mut random = Random(2);
     for case in 0..2000 {
-        let mut point =
-            || Vec3::new(random.next(-1.0, 1.0) as f32, random.next(-1.0, 1.0) as f32, random.next(-1.0, 1.0) as f32);
+        let mut point = || {
+            Vec3::new(
+                random.next(-1.0, 1.0) as f32,
+                random.next(-1.0, 1.0) as f32,
+                random.next(-1.0, 1.0) as f32,
+            )
+        };
         let (middle, u, v) = (point(), point() * 3.0, point() * 3.0);
         let positions = vec![middle - u - v, middle + u - v, middle + u + v, middle - u + v];
         for triangles in [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [3, 0, 1]], [[0, 2, 1], [0, 2, 3]]] {
             let geometry = project(&scene_of(positions.clone(), triangles.to_vec()), &settings);
             let counts = hit_counts(&geometry, &settings);
-            // Rays through pixel centres meet the parallelogram, in f64, by a margin, beyond the near plane.
-            let inside = |x: f64, y: f64| meets([middle, u, v], [(x - 20.0) / 15.0, -(y - 15.0) / 15.0]);
+            // Rays through pixel centres meet the parallelogram, in f64, by a margin, beyond the
+            // near plane.
+            let inside =
+                |x: f64, y: f64| meets([middle, u, v], [(x - 20.0) / 15.0, -(y - 15.0) / 15.0]);
             assert_once(&counts, 40, inside, &format!("case {case}, {triangles:?}"));
         }
     }
@@ -240,7 +290,10 @@ fn meets([middle, u, v]: [Vec3; 3], [x, y]: [f64; 2]) -> bool {
     let normal = u.cross(v);
     let t = middle.dot(normal) / ray.dot(normal);
     let at = ray * t - middle;
-    let (a, b) = (at.cross(v).dot(normal) / normal.length_squared(), u.cross(at).dot(normal) / normal.length_squared());
+    let (a, b) = (
+        at.cross(v).dot(normal) / normal.length_squared(),
+        u.cross(at).dot(normal) / normal.length_squared(),
+    );
     // Slivers seen edge on are all margin.
     let is_steep = ray.normalize().dot(normal.normalize()).abs() > 0.05;
     is_steep && t > 0.0102 && a.abs().max(b.abs()) < 0.99
@@ -266,8 +319,10 @@ fn soup(num: u32, settings: &Settings) -> Scene {
     let mut random = Random(3);
     let mut corners = vec![];
     for _ in 0..num {
-        let (center, extent) =
-            ([random.next(-5.0, 105.0), random.next(-5.0, 75.0)], 10_f64.powf(random.next(-0.5, 2.5)));
+        let (center, extent) = (
+            [random.next(-5.0, 105.0), random.next(-5.0, 75.0)],
+            10_f64.powf(random.next(-0.5, 2.5)),
+        );
         let mut corner = || {
             let w = random.next(0.5, 3.0);
             [center[0] + random.next(-extent, extent), center[1] + random.next(-extent, extent), w]
@@ -318,7 +373,8 @@ fn tile_size_and_threads_do_not_show() {
             assert_eq!(hits, hit_counts(&project(&scene, &settings), &settings));
         }
         for num_threads in [1, 2, 7] {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(num_threads).build().expect("threads");
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(num_threads).build().expect("threads");
             let (other, other_stats) = pool.install(|| drawn(&scene, &settings));
             assert!(bits(&frame) == bits(&other), "{num_threads} threads, msaa {msaa}");
             assert_eq!(stats, other_stats);
@@ -335,7 +391,10 @@ fn order_of_triangles_does_not_show_where_depths_differ() {
         let mut reversed = scene.clone();
         reversed.meshes.reverse();
         reversed.meshes.iter_mut().for_each(|mesh| mesh.triangles.reverse());
-        assert!(bits(&drawn(&scene, &settings).0) == bits(&drawn(&reversed, &settings).0), "{num} triangles");
+        assert!(
+            bits(&drawn(&scene, &settings).0) == bits(&drawn(&reversed, &settings).0),
+            "{num} triangles"
+        );
     }
 }
 
@@ -343,12 +402,17 @@ fn order_of_triangles_does_not_show_where_depths_differ() {
 fn order_does_not_depend_on_threads() {
     let settings = settings(200, 150);
     let scene = soup(20_000, &settings);
-    let triangles = |geometry: &Geometry| geometry.triangles().copied().collect::<Vec<ScreenTriangle>>();
+    let triangles =
+        |geometry: &Geometry| geometry.triangles().copied().collect::<Vec<ScreenTriangle>>();
     let expected = triangles(&project(&scene, &settings));
     assert!(expected.is_sorted_by_key(|triangle| (triangle.mesh, triangle.triangle)));
     for num_threads in [1, 2, 7] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(num_threads).build().expect("threads");
-        assert!(pool.install(|| triangles(&project(&scene, &settings))) == expected, "{num_threads} threads");
+        let pool =
+            rayon::ThreadPoolBuilder::new().num_threads(num_threads).build().expect("threads");
+        assert!(
+            pool.install(|| triangles(&project(&scene, &settings))) == expected,
+            "{num_threads} threads"
+        );
     }
 }
 
@@ -365,7 +429,10 @@ fn samples_share_pixels_by_their_number() {
         let mut frame = Frame { width: 0, height: 0, pixels: vec![] };
         let white = |_: &QuadPair| [PixelLanes::ONE; 3];
         draw(&project(&scene, &settings), &scene, &settings, &white, &mut frame);
-        assert_eq!(frame.pixels[..4], [[1.0; 4], [1.0; 4], [1.0, 0.5, 0.5, 1.0], [1.0, 0.0, 0.0, 1.0]]);
+        assert_eq!(
+            frame.pixels[..4],
+            [[1.0; 4], [1.0; 4], [1.0, 0.5, 0.5, 1.0], [1.0, 0.0, 0.0, 1.0]]
+        );
     }
 }
 
@@ -375,7 +442,11 @@ fn every_mesh_of_shared_edges_covers_every_sample_once() {
         let settings = Settings { msaa, ..settings(20, 20) };
         for degree in 0..90 {
             let (corners, triangles) = fan([10.1, 9.7], 40.0, 9, f64::from(degree));
-            assert!(counts(&corners, &triangles, &settings).iter().all(|&count| u32::from(count) == msaa));
+            assert!(
+                counts(&corners, &triangles, &settings)
+                    .iter()
+                    .all(|&count| u32::from(count) == msaa)
+            );
         }
     }
 }
@@ -390,11 +461,15 @@ fn back_faces_are_culled_on_demand() {
     let both = Settings { cull_back_faces: false, ..settings };
     assert!(counts(&corners, &[[0, 2, 1]], &both)[0] == 1);
     // Clipped ones too.
-    let corners = [Vec3::new(-50.0, -1.0, 5.0), Vec3::new(50.0, -1.0, 5.0), Vec3::new(0.0, -1.0, -50.0)];
-    let num =
-        |triangle, settings: &Settings| project(&scene_of(corners.to_vec(), vec![triangle]), settings).num_triangles();
+    let corners =
+        [Vec3::new(-50.0, -1.0, 5.0), Vec3::new(50.0, -1.0, 5.0), Vec3::new(0.0, -1.0, -50.0)];
+    let num = |triangle, settings: &Settings| {
+        project(&scene_of(corners.to_vec(), vec![triangle]), settings).num_triangles()
+    };
     let culled = Settings { cull_back_faces: true, ..both.clone() };
-    assert!(num([0, 1, 2], &culled) > 0 && num([0, 2, 1], &culled) == 0 && num([0, 2, 1], &both) > 0);
+    assert!(
+        num([0, 1, 2], &culled) > 0 && num([0, 2, 1], &culled) == 0 && num([0, 2, 1], &both) > 0
+    );
 }
 
 #[test]
@@ -403,7 +478,8 @@ fn the_nearer_wins_and_equal_depth_keeps_the_first() {
     let square = |w: f64| [[0.0, 0.0, w], [0.0, 20.0, w], [20.0, 0.0, w]];
     let color = |depths: &[f64]| {
         let corners: Vec<_> = depths.iter().flat_map(|&w| square(w)).collect();
-        let triangles: Vec<_> = (0..depths.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let triangles: Vec<_> =
+            (0..depths.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let mut scene = scene(&corners, &triangles, &settings);
         let mesh = scene.meshes.remove(0);
         for (i, triangle) in triangles.iter().enumerate() {
@@ -429,7 +505,8 @@ fn attributes_are_perspective_correct() {
     let positions: Vec<_> = corners.map(|(x, z)| Vec3::new(x * size, -1.0, z * size)).to_vec();
     let tex_coords = positions.iter().map(|p| Vec2::new(p.x, -p.z)).collect();
     let mut scene = scene_of(vec![], vec![]);
-    scene.meshes = vec![Mesh::new(positions, tex_coords, vec![Vec3::Y; 4], vec![[0, 1, 2], [0, 2, 3]])];
+    scene.meshes =
+        vec![Mesh::new(positions, tex_coords, vec![Vec3::Y; 4], vec![[0, 1, 2], [0, 2, 3]])];
     let worst = std::sync::Mutex::new(0.0_f64);
     let check = |pair: &QuadPair| {
         let [x, y] = pair.centers().map(PixelLanes::to_array);

@@ -1,20 +1,21 @@
 //! The same bytes for any number of threads, any tile size and any SIMD level.
 //!
-//! `golden/frames.txt` holds a hash a case, of the frame's f32 bits and its 8-bit bytes. After a wanted change run with
-//! `BASRELIEF_ACCEPT=1` to write it anew, and look at what changed.
+//! `golden/frames.txt` holds a hash a case, of the frame's f32 bits and its 8-bit bytes. After a
+//! wanted change run with `BASRELIEF_ACCEPT=1` to write it anew, and look at what changed.
 
 mod common;
 
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
 use basrelief::{
-    Derivatives, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material, Mesh, Rays, Region, Renderer, Scene,
-    Settings, Trilinear, Visibility, Visible,
+    Derivatives, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material, Mesh, Rays,
+    Region, Renderer, Scene, Settings, Trilinear, Visibility, Visible,
 };
 use common::{cobbles, floor_scene};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// A relief floor of `size` texels, a mirrored relief wall that cuts it, and a plain triangle, under two lights.
+/// A relief floor of `size` texels, a mirrored relief wall that cuts it, and a plain triangle,
+/// under two lights.
 fn scene(wrap: Wrap, size: u32) -> Scene {
     let maps = |size, stones| SurfaceMaps { wrap, ..cobbles(size, stones) };
     let mut scene = floor_scene(Surface::new(maps(size, 4)).expect("valid maps"), 0.5);
@@ -26,7 +27,9 @@ fn scene(wrap: Wrap, size: u32) -> Scene {
         ..Material::default()
     });
     scene.materials.push(Material { diffuse: Vec3::new(0.2, 0.3, 0.8), ..Material::default() });
-    let corners = [[-2.0, -0.5, 1.5], [1.5, -0.5, -1.0], [1.5, 2.0, -1.0], [-2.0, 2.0, 1.5]].map(Vec3::from).to_vec();
+    let corners = [[-2.0, -0.5, 1.5], [1.5, -0.5, -1.0], [1.5, 2.0, -1.0], [-2.0, 2.0, 1.5]]
+        .map(Vec3::from)
+        .to_vec();
     let tex_coords = [[1.5, 0.0], [0.0, 0.0], [0.0, 1.2], [1.5, 1.2]].map(Vec2::from).to_vec();
     let mut wall = Mesh::new(corners, tex_coords, vec![], vec![[0, 1, 2], [0, 2, 3]]);
     wall.material = 1;
@@ -54,7 +57,9 @@ fn with_small_options(filter: Filter) -> (&'static str, Filter) {
         Filter::Bilinear => ("Bilinear", filter),
         Filter::Trilinear(_) => ("Trilinear", filter),
         Filter::Ewa(ewa) => ("Ewa", Filter::Ewa(Ewa { texel_budget: 64, ..ewa })),
-        Filter::Visible(visible) => ("Visible", Filter::Visible(Visible { texel_budget: 64, ..visible })),
+        Filter::Visible(visible) => {
+            ("Visible", Filter::Visible(Visible { texel_budget: 64, ..visible }))
+        }
         Filter::Horizon(_) => ("Horizon", filter),
         Filter::Parallax(_) => ("Parallax", Filter::Parallax(Rays { samples: 4 })),
         Filter::Truth(_) => ("Truth", Filter::Truth(Rays { samples: 4 })),
@@ -81,8 +86,16 @@ fn cases() -> Vec<Case> {
     for (name, filter, narrow) in [
         ("Trilinear", trilinear, trilinear),
         ("Ewa", Filter::Ewa(ewa), Filter::Ewa(Ewa { max_anisotropy: 4.0, ..ewa })),
-        ("Visible", Filter::Visible(visible), Filter::Visible(Visible { max_anisotropy: 4.0, ..visible })),
-        ("Horizon", Filter::Horizon(horizon), Filter::Horizon(Horizon { max_anisotropy: 4.0, ..horizon })),
+        (
+            "Visible",
+            Filter::Visible(visible),
+            Filter::Visible(Visible { max_anisotropy: 4.0, ..visible }),
+        ),
+        (
+            "Horizon",
+            Filter::Horizon(horizon),
+            Filter::Horizon(Horizon { max_anisotropy: 4.0, ..horizon }),
+        ),
     ] {
         add(&format!("{name} mirror"), Wrap::Mirror, small(filter));
         add(&format!("{name} clamp"), Wrap::Clamp, small(filter));
@@ -94,13 +107,17 @@ fn cases() -> Vec<Case> {
         let settings = Settings { lighting, ..small(filter) };
         add(&format!("Ewa {lighting:?}, every texel, cut {cut}"), Wrap::Repeat, settings);
     }
-    let mut add_visible = |name: &str, visible| add(name, Wrap::Repeat, small(Filter::Visible(visible)));
+    let mut add_visible =
+        |name: &str, visible| add(name, Wrap::Repeat, small(Filter::Visible(visible)));
     let (flat, printed) = (Derivatives::Flat, Formulas::Printed);
     add_visible("two-ended", Visible { visibility: Visibility::TwoEnded, ..visible });
     add_visible("resolved", Visible { visibility: Visibility::Resolved, ..visible });
     add_visible("flat derivatives", Visible { derivatives: flat, ..visible });
     add_visible("printed", Visible { formulas: printed, ..visible });
-    add_visible("printed, flat derivatives", Visible { derivatives: flat, formulas: printed, ..visible });
+    add_visible(
+        "printed, flat derivatives",
+        Visible { derivatives: flat, formulas: printed, ..visible },
+    );
     add_visible("base level", Visible { texel_budget: 0, ..visible });
     let culled = Settings { cull_back_faces: true, msaa: 8, ..small(Filter::Visible(visible)) };
     add("culled, msaa 8", Wrap::Repeat, culled);
@@ -133,7 +150,9 @@ fn draw(&(_, wrap, size, ref settings): &Case) -> Frame {
 fn hash(frame: &Frame) -> u64 {
     let floats = frame.pixels.iter().flatten().flat_map(|c| c.to_bits().to_le_bytes());
     let bytes = frame.to_rgba8().into_iter().flatten();
-    floats.chain(bytes).fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+    floats.chain(bytes).fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+    })
 }
 
 #[test]
@@ -145,20 +164,34 @@ fn frames_have_the_golden_bytes() {
         std::fs::write(path, &found).expect("the golden file can be written");
     }
     let expected = std::fs::read_to_string(path).unwrap_or_default();
-    let changed: Vec<_> = found.lines().filter(|line| !expected.lines().any(|other| other == *line)).collect();
-    assert!(found == expected, "BASRELIEF_ACCEPT=1 accepts on {}: {changed:#?}", basrelief::SIMD_LEVEL);
+    let changed: Vec<_> =
+        found.lines().filter(|line| !expected.lines().any(|other| other == *line)).collect();
+    assert!(
+        found == expected,
+        "BASRELIEF_ACCEPT=1 accepts on {}: {changed:#?}",
+        basrelief::SIMD_LEVEL
+    );
 }
 
 #[test]
 fn frames_do_not_depend_on_threads_and_tiles() {
-    let pools = [1, 2, 7].map(|num| rayon::ThreadPoolBuilder::new().num_threads(num).build().expect("a pool"));
+    let pools = [1, 2, 7]
+        .map(|num| rayon::ThreadPoolBuilder::new().num_threads(num).build().expect("a pool"));
     for (name, wrap, size, settings) in cases() {
-        let mut renderer = Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene");
+        let mut renderer =
+            Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene");
         let expected = hash(&pools[0].install(|| renderer.render()));
         for (pool, tile_size) in pools.iter().cycle().zip([8, 16, 32, 64, 128, 256]) {
-            renderer.set_settings(Settings { tile_size, ..settings.clone() }).expect("valid settings");
+            renderer
+                .set_settings(Settings { tile_size, ..settings.clone() })
+                .expect("valid settings");
             let found = hash(&pool.install(|| renderer.render()));
-            assert_eq!(found, expected, "{name}: tiles of {tile_size}, {} threads", pool.current_num_threads());
+            assert_eq!(
+                found,
+                expected,
+                "{name}: tiles of {tile_size}, {} threads",
+                pool.current_num_threads()
+            );
         }
     }
 }
@@ -169,7 +202,9 @@ fn frames_of_any_size_do_not_depend_on_threads_and_tiles() {
     for (width, height) in [(1, 1), (2, 1), (1, 7), (8, 8), (9, 17), (31, 33), (65, 3)] {
         for (name, filter) in Filter::ALL.map(with_small_options) {
             let settings = Settings { width, height, ..small(filter) };
-            let case = |tile_size| (String::new(), Wrap::Repeat, 64, Settings { tile_size, ..settings.clone() });
+            let case = |tile_size| {
+                (String::new(), Wrap::Repeat, 64, Settings { tile_size, ..settings.clone() })
+            };
             let expected = draw(&case(32));
             let other = pool.install(|| draw(&case(8)));
             assert!(expected == other, "{name} at {width} x {height}");
@@ -179,15 +214,25 @@ fn frames_of_any_size_do_not_depend_on_threads_and_tiles() {
 
 #[test]
 fn regions_have_the_bytes_of_their_part_of_the_frame() {
-    let regions =
-        [[0, 0, 45, 37], [0, 0, 1, 1], [44, 36, 1, 1], [7, 3, 11, 9], [8, 8, 8, 8], [13, 30, 32, 7], [1, 0, 3, 37]];
+    let regions = [
+        [0, 0, 45, 37],
+        [0, 0, 1, 1],
+        [44, 36, 1, 1],
+        [7, 3, 11, 9],
+        [8, 8, 8, 8],
+        [13, 30, 32, 7],
+        [1, 0, 3, 37],
+    ];
     for (name, wrap, size, settings) in cases() {
-        let mut renderer = Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene");
+        let mut renderer =
+            Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene");
         let whole = renderer.render();
         for (i, [x, y, width, height]) in regions.into_iter().enumerate() {
             let region = Some(Region { x, y, width, height });
             let tile_size = [8, 16, 32][i % 3];
-            renderer.set_settings(Settings { region, tile_size, ..settings.clone() }).expect("valid settings");
+            renderer
+                .set_settings(Settings { region, tile_size, ..settings.clone() })
+                .expect("valid settings");
             let mut expected = whole.clone();
             expected.crop(Region { x, y, width, height });
             assert!(renderer.render() == expected, "{name}: {region:?}");
@@ -197,11 +242,19 @@ fn regions_have_the_bytes_of_their_part_of_the_frame() {
 
 #[test]
 fn regions_outside_the_frame_are_refused() {
-    for [x, y, width, height] in
-        [[0, 0, 46, 1], [45, 0, 1, 1], [0, 30, 1, 8], [3, 3, 0, 1], [1, 1, 1, 0], [u32::MAX, 0, 2, 1]]
-    {
+    for [x, y, width, height] in [
+        [0, 0, 46, 1],
+        [45, 0, 1, 1],
+        [0, 30, 1, 8],
+        [3, 3, 0, 1],
+        [1, 1, 1, 0],
+        [u32::MAX, 0, 2, 1],
+    ] {
         let region = Some(Region { x, y, width, height });
-        let error = Settings { region, ..small(Filter::Nearest) }.validate().expect_err("refused").to_string();
+        let error = Settings { region, ..small(Filter::Nearest) }
+            .validate()
+            .expect_err("refused")
+            .to_string();
         assert!(error.starts_with("region: "), "{error}");
     }
 }

@@ -1,9 +1,12 @@
-//! Properties of the filters over random textures, footprints and views, and the kernels against the scalar reference.
+//! Properties of the filters over random textures, footprints and views, and the kernels against
+//! the scalar reference.
 
 mod common;
 
 use basrelief::filter::visible::{Occlusion, TexelSet, average, remove_hidden};
-use basrelief::filter::{Batch, Filtered, Footprint, Footprints, Prepared, Scratch, ewa, points, trilinear};
+use basrelief::filter::{
+    Batch, Filtered, Footprint, Footprints, Prepared, Scratch, ewa, points, trilinear,
+};
 use basrelief::footprint::Ellipse;
 use basrelief::invariants::{self, Checked};
 use basrelief::reference::{Conic, Lines, RAY_TIE, mean, ray_margin, supersampled, texels};
@@ -16,7 +19,12 @@ use proptest::test_runner::RngSeed;
 
 /// The same cases on every run: what rounding decides must not fail one build in a thousand.
 fn cases(num: u32) -> ProptestConfig {
-    ProptestConfig { cases: num, rng_seed: RngSeed::Fixed(2017), failure_persistence: None, ..Default::default() }
+    ProptestConfig {
+        cases: num,
+        rng_seed: RngSeed::Fixed(2017),
+        failure_persistence: None,
+        ..Default::default()
+    }
 }
 
 fn broke(checked: Checked) -> Result<(), TestCaseError> {
@@ -32,7 +40,13 @@ fn maps(width: u32, height: u32, wrap: Wrap, seed: u64) -> SurfaceMaps {
         let h = random.within(1.0 - roughness, 1.0);
         if seed.is_multiple_of(2) { h } else { (h * 4.0).round() / 4.0 }
     });
-    SurfaceMaps { albedo: Some(albedo), height: Some(heights), wrap, relief_depth: 0.1, ..Default::default() }
+    SurfaceMaps {
+        albedo: Some(albedo),
+        height: Some(heights),
+        wrap,
+        relief_depth: 0.1,
+        ..Default::default()
+    }
 }
 
 fn surface(maps: SurfaceMaps) -> Surface {
@@ -58,7 +72,8 @@ fn any_maps() -> impl Strategy<Value = Made> {
     (1_u32..13, 1_u32..13, wrap, any::<u64>()).prop_map(|(w, h, wrap, seed)| Made(w, h, wrap, seed))
 }
 
-/// Repeating square maps of a power of two, which shift and turn exactly, with depths that can be halved.
+/// Repeating square maps of a power of two, which shift and turn exactly, with depths that can be
+/// halved.
 fn even_maps(seed: u64) -> SurfaceMaps {
     let mut maps = maps(16, 16, Wrap::Repeat, seed);
     maps.height.as_mut().expect("heights").texels.iter_mut().for_each(|h| *h = *h & !3 | 2);
@@ -67,17 +82,29 @@ fn even_maps(seed: u64) -> SurfaceMaps {
 
 /// Any number that a footprint may hold.
 fn any_number() -> impl Strategy<Value = f32> {
-    let strange =
-        vec![0.0, -0.0, 1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, 1e-30, f32::MIN_POSITIVE];
+    let strange = vec![
+        0.0,
+        -0.0,
+        1.0,
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        1e30,
+        -1e30,
+        1e-30,
+        f32::MIN_POSITIVE,
+    ];
     prop_oneof![3 => -1.0_f32..1.0, 1 => -1e-4_f32..1e-4, 1 => prop::sample::select(strange), 1 => any::<f32>()]
 }
 
 fn any_pixel() -> impl Strategy<Value = Footprint> {
     let pair = || prop::array::uniform2(any_number());
-    (pair(), pair(), pair(), pair()).prop_map(|(base, dx, dy, view)| Footprint::new(base, dx, dy, view).bounded())
+    (pair(), pair(), pair(), pair())
+        .prop_map(|(base, dx, dy, view)| Footprint::new(base, dx, dy, view).bounded())
 }
 
-/// A pixel with derivatives up to `reach` and a displacement up to `walk` repeats, at a 1024th of a repeat.
+/// A pixel with derivatives up to `reach` and a displacement up to `walk` repeats, at a 1024th of a
+/// repeat.
 fn pixel(reach: f32, walk: f32) -> impl Strategy<Value = Footprint> {
     let pair = |most: f32| prop::array::uniform2(-most..most);
     (pair(1.0), pair(reach), pair(reach), pair(walk)).prop_map(|(base, dx, dy, view)| {
@@ -234,15 +261,18 @@ proptest! {
 fn marches_along_the_edges_of_cells_find_the_first_hit() {
     let heights = HeightImage::from_fn(11, 4, |x, y| 0.5 + 0.01 * (x % 3 + y) as f32);
     let surface = surface(SurfaceMaps { height: Some(heights), ..Default::default() });
-    for (place, view) in
-        [([-13.625, -13.625], [-13.625, 0.0]), ([-13.5 / 11.0, 0.3], [0.0, 3.7]), ([-13.5 / 11.0, 0.3], [-1e-5, 3.7])]
-    {
+    for (place, view) in [
+        ([-13.625, -13.625], [-13.625, 0.0]),
+        ([-13.5 / 11.0, 0.3], [0.0, 3.7]),
+        ([-13.5 / 11.0, 0.3], [-1e-5, 3.7]),
+    ] {
         let pixel = Footprint::new(place, [0.1, 0.0], [0.0, 0.1], view);
         invariants::march_finds_first_hit(&surface, &pixel).expect("the first hit");
     }
 }
 
-/// Found by fuzzing: under a high limit of anisotropy the half axes of a thin ellipse came from a difference that cancels.
+/// Found by fuzzing: under a high limit of anisotropy the half axes of a thin ellipse came from a
+/// difference that cancels.
 #[test]
 fn a_sweep_takes_a_bounded_number_of_rows() {
     let surface = surface(maps(1, 1, Wrap::Repeat, 1));
@@ -252,7 +282,8 @@ fn a_sweep_takes_a_bounded_number_of_rows() {
         let pixel = Footprint::new([0.9, 0.0], [0.0, 0.002], [-15.75, -15.75], [view; 2]);
         let batch = Batch { pixels: &[Footprints::splat(&pixel)], lights: &[], is_fine: true };
         let mut found = [Filtered::default()];
-        let num_rows = filter.colors(&prepared, &batch, &mut Scratch::default(), &mut found).num_tested;
+        let num_rows =
+            filter.colors(&prepared, &batch, &mut Scratch::default(), &mut found).num_tested;
         assert!((1..8 * 200).contains(&num_rows), "{num_rows} rows");
     }
 }
@@ -276,7 +307,12 @@ impl Case {
         let texels = surface.base().texels_per_repeat();
         let ellipse = Ellipse::new(pixel, texels, Formulas::Meant).widened(64.0, Formulas::Meant);
         let scaled = |p: [f32; 2]| [p[0] * texels[0], p[1] * texels[1]];
-        Self { center: scaled(pixel.base), displacement: scaled(pixel.displacement), surface, ellipse }
+        Self {
+            center: scaled(pixel.base),
+            displacement: scaled(pixel.displacement),
+            surface,
+            ellipse,
+        }
     }
 
     fn conic(&self) -> Conic {
@@ -393,8 +429,8 @@ proptest! {
     }
 }
 
-/// How far the sweep may be from the reference on the same lines, of the range: the fitted integral is off by 2e-4, f32 on
-/// steep relief by as much.
+/// How far the sweep may be from the reference on the same lines, of the range: the fitted integral
+/// is off by 2e-4, f32 on steep relief by as much.
 const HORIZON_ERROR: f64 = 2e-3;
 
 /// The 64 lines that the sweep takes.
@@ -403,7 +439,13 @@ fn reference_lines<'a>(surface: &'a Surface, pixel: &Footprint) -> Lines<'a> {
     let ellipse = Ellipse::new(pixel, texels, Formulas::Meant).bounded(64.0);
     let scaled = |p: [f32; 2]| [p[0] * texels[0], p[1] * texels[1]].map(f64::from);
     let (center, displacement) = (scaled(pixel.base), scaled(pixel.displacement));
-    let lines = Lines { level: surface.base(), conic: Conic::from(&ellipse), center, displacement, spacing: 1.0 };
+    let lines = Lines {
+        level: surface.base(),
+        conic: Conic::from(&ellipse),
+        center,
+        displacement,
+        spacing: 1.0,
+    };
     let width = 2.0 * lines.half_width();
     Lines { spacing: width / (0.65 * 64.0), ..lines }
 }
@@ -411,7 +453,12 @@ fn reference_lines<'a>(surface: &'a Surface, pixel: &Footprint) -> Lines<'a> {
 /// A floor's footprint: `aspect` times as long along the view as across.
 fn floor_pixel(center: [f32; 2], across: f32, aspect: f32, angle: f32, walk: f32) -> Footprint {
     let (c, s) = (angle.cos(), angle.sin());
-    Footprint::new(center, [-s * across, c * across], [c * across * aspect, s * across * aspect], [c * walk, s * walk])
+    Footprint::new(
+        center,
+        [-s * across, c * across],
+        [c * across * aspect, s * across * aspect],
+        [c * walk, s * walk],
+    )
 }
 
 #[test]
@@ -422,10 +469,15 @@ fn averages_of_long_ellipses_are_close_to_many_rays() {
     for _ in 0..300 {
         let center = [0; 2].map(|_| random.within(0.0, 1.0));
         let angle = random.within(0.0, std::f32::consts::TAU);
-        let pixel = floor_pixel(center, random.within(0.01, 0.1), random.within(1.0, 12.0), angle, 0.0);
+        let pixel =
+            floor_pixel(center, random.within(0.01, 0.1), random.within(1.0, 12.0), angle, 0.0);
         let truth = supersampled(&surface, &pixel, 24);
         for (every_texel, sum) in [true, false].into_iter().zip(&mut squares) {
-            let color = invariants::filtered(&surface, &pixel, &Filter::Ewa(Ewa { every_texel, ..Ewa::default() }));
+            let color = invariants::filtered(
+                &surface,
+                &pixel,
+                &Filter::Ewa(Ewa { every_texel, ..Ewa::default() }),
+            );
             *sum += (0..3).map(|i| (f64::from(color[i]) - truth[i]).powi(2)).sum::<f64>() / 3.0;
         }
     }
@@ -456,10 +508,13 @@ fn horizon_is_close_to_many_rays_and_visible_less_so() {
         let center = [0; 2].map(|_| random.within(0.0, 1.0));
         let angle = random.within(0.0, std::f32::consts::TAU);
         let across = random.within(0.01, 0.1);
-        let pixel = floor_pixel(center, across, random.within(1.0, 4.0), angle, random.within(0.0, 0.4));
+        let pixel =
+            floor_pixel(center, across, random.within(1.0, 4.0), angle, random.within(0.0, 0.4));
         let truth = supersampled(&surface, &pixel, 24);
         let visible = Visible { texel_budget: 0, ..Visible::default() };
-        for (filter, sum) in [Filter::Horizon(horizon(64)), Filter::Visible(visible)].iter().zip(&mut squares) {
+        for (filter, sum) in
+            [Filter::Horizon(horizon(64)), Filter::Visible(visible)].iter().zip(&mut squares)
+        {
             let color = invariants::filtered(&surface, &pixel, filter);
             *sum += (0..3).map(|i| (f64::from(color[i]) - truth[i]).powi(2)).sum::<f64>() / 3.0;
         }
@@ -480,20 +535,25 @@ fn flat_horizon_is_the_gaussian_over_bilinear_texels() {
         let (across, aspect) = (random.within(0.005, 0.2), random.within(1.0, 3.0));
         let pixel = floor_pixel(center, across, aspect, random.within(0.0, 6.3), 0.0);
         let found = invariants::filtered(&surface, &pixel, &Filter::Horizon(horizon(64)));
-        let error = |expected: [f64; 3]| (0..3).map(|i| (f64::from(found[i]) - expected[i]).abs()).fold(0.0, f64::max);
+        let error = |expected: [f64; 3]| {
+            (0..3).map(|i| (f64::from(found[i]) - expected[i]).abs()).fold(0.0, f64::max)
+        };
         worst_lines = worst_lines.max(error(reference_lines(&surface, &pixel).mean()));
         worst = worst.max(error(supersampled(&surface, &pixel, 64)));
     }
     println!("flat: {worst_lines} from the reference's lines, {worst} from the integral");
-    // The goal is 1e-5 on the lines; interpolation in 15 bits alone is worth 3e-5. Lines a texel apart blur between two
-    // texels more or less, as they fall: on white noise that shows.
+    // The goal is 1e-5 on the lines; interpolation in 15 bits alone is worth 3e-5. Lines a texel
+    // apart blur between two texels more or less, as they fall: on white noise that shows.
     assert!(worst_lines < 3e-5 && worst < 0.06, "{worst_lines} {worst}");
 }
 
-/// As Vulkan's conformance tests of anisotropy have it: a grid on a slanted plane, isotropic and anisotropic close, not equal.
+/// As Vulkan's conformance tests of anisotropy have it: a grid on a slanted plane, isotropic and
+/// anisotropic close, not equal.
 #[test]
 fn anisotropic_is_close_to_isotropic_and_sharper() {
-    let grid = ColorImage::from_fn(128, 128, |x, y| [if (x / 16 + y / 16) % 2 == 0 { 0.0 } else { 1.0 }; 3]);
+    let grid = ColorImage::from_fn(128, 128, |x, y| {
+        [if (x / 16 + y / 16) % 2 == 0 { 0.0 } else { 1.0 }; 3]
+    });
     let surface = surface(SurfaceMaps { albedo: Some(grid), ..Default::default() });
     let (mut sum, mut most) = (0.0, 0.0_f32);
     for limit in [2.0, 4.0, 8.0, 16.0] {
@@ -502,7 +562,11 @@ fn anisotropic_is_close_to_isotropic_and_sharper() {
             let w = 1.0 + 2.5 * i as f32 / 63.0;
             let pixel = floor_pixel([i as f32 / 64.0, 0.3], w / 128.0, w, 0.0, 0.0);
             let of = |max_anisotropy: f32| {
-                invariants::filtered(&surface, &pixel, &Filter::Ewa(Ewa { max_anisotropy, ..Ewa::default() }))[0]
+                invariants::filtered(
+                    &surface,
+                    &pixel,
+                    &Filter::Ewa(Ewa { max_anisotropy, ..Ewa::default() }),
+                )[0]
             };
             let error = (of(limit) - of(1.0)).abs();
             (sum, most) = (sum + error, most.max(error));
@@ -511,7 +575,8 @@ fn anisotropic_is_close_to_isotropic_and_sharper() {
     assert!(sum / 256.0 < 0.05 && most > 0.02, "mean {}, most {most}", sum / 256.0);
 }
 
-/// As WebGPU's conformance tests of anisotropy have it: a checkerboard on a slanted plane, limits of 16 and of 1024.
+/// As WebGPU's conformance tests of anisotropy have it: a checkerboard on a slanted plane, limits
+/// of 16 and of 1024.
 #[test]
 fn limits_of_16_and_1024_are_equal_where_the_footprint_is_below() {
     let checker = ColorImage::from_fn(32, 32, |x, y| [if (x + y) % 2 == 0 { 0.0 } else { 1.0 }; 3]);
@@ -519,7 +584,13 @@ fn limits_of_16_and_1024_are_equal_where_the_footprint_is_below() {
     for filter in limited_filters().map(|filter| with_lines(filter, 16)) {
         let mut num_widened = 0;
         for i in 0..200 {
-            let pixel = floor_pixel([0.1 * i as f32, 0.37 * i as f32], 0.02, 1.0 + 0.07 * i as f32, 1.0, 0.0);
+            let pixel = floor_pixel(
+                [0.1 * i as f32, 0.37 * i as f32],
+                0.02,
+                1.0 + 0.07 * i as f32,
+                1.0,
+                0.0,
+            );
             let of = |limit| invariants::filtered(&surface, &pixel, &with_limit(filter, limit));
             assert_eq!(of(16.0), of(1024.0), "{filter:?} {i}");
             num_widened += usize::from(of(1.0) != of(16.0));
@@ -540,8 +611,8 @@ fn magnified_footprints_are_smooth() {
             invariants::filtered(&surface, &pixel, &filter)[0]
         };
         let row: Vec<f32> = (0..512).map(at).collect();
-        // 32 pixels a texel: bilinear interpolation changes by 1/32 a pixel. The ellipse of texel centres has an edge,
-        // where a texel of weight exp(-2) comes in.
+        // 32 pixels a texel: bilinear interpolation changes by 1/32 a pixel. The ellipse of texel
+        // centres has an edge, where a texel of weight exp(-2) comes in.
         let most = if matches!(filter, Filter::Horizon(_)) { 0.04 } else { 0.2 };
         let steepest = row.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
         assert!(steepest < most, "{filter:?} changes by {steepest} from pixel to pixel");

@@ -1,4 +1,5 @@
-//! Formulas (1), (2) and (3) as the paper prints them and as they are meant, on random cameras and meshes.
+//! Formulas (1), (2) and (3) as the paper prints them and as they are meant, on random cameras and
+//! meshes.
 
 mod common;
 
@@ -9,7 +10,9 @@ use basrelief::reference::{Conic, derivatives};
 use basrelief::relief::{HeightField, displacement, march};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::Wrap;
-use basrelief::{Camera, Derivatives, FootprintRule, Formulas, Material, Mesh, RECONSTRUCTION, Scene, Settings};
+use basrelief::{
+    Camera, Derivatives, FootprintRule, Formulas, Material, Mesh, RECONSTRUCTION, Scene, Settings,
+};
 use common::{Random, rough_surface};
 use glam::{Vec2, Vec3};
 
@@ -31,16 +34,24 @@ fn random_scene(random: &mut Random) -> Scene {
     let positions = vec![point(2.0), point(2.0), point(2.0)];
     let eye = point(1.0) + Vec3::new(0.0, 0.0, 6.0);
     let target = point(1.0);
-    let tex_coords = (0..3).map(|_| Vec2::new(random.within(-4.0, 4.0), random.within(-4.0, 4.0))).collect();
+    let tex_coords =
+        (0..3).map(|_| Vec2::new(random.within(-4.0, 4.0), random.within(-4.0, 4.0))).collect();
     Scene {
         meshes: vec![Mesh::new(positions, tex_coords, vec![], vec![[0, 1, 2]])],
         materials: vec![Material::default()],
-        camera: Camera { eye, target, up: Vec3::Y, fov_degrees: random.within(20.0, 100.0), near: 0.01 },
+        camera: Camera {
+            eye,
+            target,
+            up: Vec3::Y,
+            fov_degrees: random.within(20.0, 100.0),
+            near: 0.01,
+        },
         ..Scene::default()
     }
 }
 
-/// The texture coordinate and offset of one pixel, evaluated on its own: in the first lane, the others elsewhere.
+/// The texture coordinate and offset of one pixel, evaluated on its own: in the first lane, the
+/// others elsewhere.
 fn alone(planes: &AttributePlanes, field: &HeightField, [x, y]: [i32; 2]) -> ([f32; 2], [f32; 2]) {
     let lanes = |c: i32| PixelLanes::new([0.5, 9.5, 3.5, -7.5, 0.5, 40.5, 2.5, 1.5]) + c as f32;
     let (uv, view) = planes.at(lanes(x), lanes(y));
@@ -88,31 +99,46 @@ fn check_quads(
         // The x-difference in the pixel's row of the quad, the y-difference in its column.
         let along_row = [[x, y + dy], [x + 1, y + dy], [x, y + dy]].map(&at);
         let along_column = [[x + dx, y], [x + dx, y], [x + dx, y + 1]].map(&at);
-        let formula = |places: [([f32; 2], [f32; 2]); 3]| derivatives(places.map(|p| p.0), places.map(|p| p.1), rule);
+        let formula = |places: [([f32; 2], [f32; 2]); 3]| {
+            derivatives(places.map(|p| p.0), places.map(|p| p.1), rule)
+        };
         let ([dudx, dvdx, _, _], [_, _, dudy, dvdy]) = (formula(along_row), formula(along_column));
         let expected = [dudx, dvdx, dudy, dvdy].map(|d| if d.is_finite() { d } else { 0.0 });
-        let lanes = [found_dx[0], found_dx[1], found_dy[0], found_dy[1]].map(|lanes| lanes.to_array()[lane]);
-        assert_eq!(lanes.map(f32::to_bits), expected.map(f32::to_bits), "{rule:?} {lanes:?} {expected:?}");
+        let lanes = [found_dx[0], found_dx[1], found_dy[0], found_dy[1]]
+            .map(|lanes| lanes.to_array()[lane]);
+        assert_eq!(
+            lanes.map(f32::to_bits),
+            expected.map(f32::to_bits),
+            "{rule:?} {lanes:?} {expected:?}"
+        );
     }
 }
 
 #[test]
 fn printed_formulas_are_the_papers_letters() {
     // u, v and offsets so unlike that every exchanged letter shows.
-    let (uv, offsets) = ([[1.0, 20.0], [300.0, 4_000.0], [5e4, 6e5]], [[0.5, 0.25], [0.125, 3.0], [7.0, 11.0]]);
+    let (uv, offsets) =
+        ([[1.0, 20.0], [300.0, 4_000.0], [5e4, 6e5]], [[0.5, 0.25], [0.125, 3.0], [7.0, 11.0]]);
     let [[u, v], [u1, v1], [u2, v2]]: [[f32; 2]; 3] = uv;
     let [[m, r], [n, o], [p, s]]: [[f32; 2]; 3] = offsets;
-    let [flat, flat_printed, relief, relief_printed] = ALL.map(|rule| derivatives(uv, offsets, &rule));
+    let [flat, flat_printed, relief, relief_printed] =
+        ALL.map(|rule| derivatives(uv, offsets, &rule));
     assert_eq!(flat, [u1 - u, v1 - v, u2 - u, v2 - v]);
     assert_eq!(flat_printed, [u1 - u, v1 - u, u2 - u, v2 - u]);
-    assert_eq!(relief, [(u1 + n) - (u + m), (v1 + o) - (v + r), (u2 + p) - (u + m), (v2 + s) - (v + r)]);
+    assert_eq!(
+        relief,
+        [(u1 + n) - (u + m), (v1 + o) - (v + r), (u2 + p) - (u + m), (v2 + s) - (v + r)]
+    );
     assert_eq!(relief_printed, [u1 + n - u + m, v1 + o - u + m, u2 + p - v + r, v2 + s - v + r]);
     let lanes = |i: usize, c: usize, of: [[f32; 2]; 3]| {
         PixelLanes::new([0, 1, 2, 0, 0, 1, 2, 0].map(|pixel| of[pixel][c] * (i + 1) as f32))
     };
     for rule in ALL {
-        let [dx, dy] =
-            differences(&[lanes(0, 0, uv), lanes(0, 1, uv)], &[lanes(0, 0, offsets), lanes(0, 1, offsets)], &rule);
+        let [dx, dy] = differences(
+            &[lanes(0, 0, uv), lanes(0, 1, uv)],
+            &[lanes(0, 0, offsets), lanes(0, 1, offsets)],
+            &rule,
+        );
         let first = [dx[0], dx[1], dy[0], dy[1]].map(|lanes| lanes.to_array()[0]);
         assert_eq!(first, derivatives(uv, offsets, &rule), "{rule:?}");
     }
@@ -156,7 +182,8 @@ fn widened_ellipse_is_that_in_f64() {
     for _ in 0..20_000 {
         let footprint = random_footprint(&mut random);
         let max_anisotropy = random.within(1.0, 64.0);
-        let found = Ellipse::new(&footprint, [64.0; 2], Formulas::Meant).widened(max_anisotropy, Formulas::Meant);
+        let found = Ellipse::new(&footprint, [64.0; 2], Formulas::Meant)
+            .widened(max_anisotropy, Formulas::Meant);
         let scaled = |d: [f32; 2]| d.map(|d| f64::from(d) * 64.0);
         let ([ux, vx], [uy, vy]) = (scaled(footprint.dx), scaled(footprint.dy));
         let expected = Conic::new([ux, vx, uy, vy], Formulas::Meant).widened(
@@ -166,9 +193,11 @@ fn widened_ellipse_is_that_in_f64() {
         );
         let size = expected.a + expected.c;
         let pairs = [(found.a, expected.a), (found.b, expected.b), (found.c, expected.c)];
-        worst[0] = pairs.iter().map(|(x, y)| (f64::from(*x) - y).abs() / size).fold(worst[0], f64::max);
+        worst[0] =
+            pairs.iter().map(|(x, y)| (f64::from(*x) - y).abs() / size).fold(worst[0], f64::max);
         worst[1] = worst[1].max((f64::from(found.f) / expected.f - 1.0).abs());
     }
-    // F is the square of a difference: where the ellipse is thin, the kernel keeps it away from zero.
+    // F is the square of a difference: where the ellipse is thin, the kernel keeps it away from
+    // zero.
     assert!(worst[0] < 1e-6 && worst[1] < 1e-4, "{worst:?}");
 }

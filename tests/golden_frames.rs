@@ -15,8 +15,8 @@ use basrelief::golden::{self, OnDifference, Thresholds};
 use basrelief::reference::{self, Conic, Lines, Ray};
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
 use basrelief::{
-    Camera, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material, Mesh, RECONSTRUCTION, Rays, Scene,
-    Settings, Visible, render,
+    Camera, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material, Mesh, RECONSTRUCTION,
+    Rays, Scene, Settings, Visible, render,
 };
 use common::{cobbles, floor_scene};
 use glam::Vec3;
@@ -42,7 +42,8 @@ const LEAST_AXIS: f64 = 1.0 / 256.0;
 const RELIEF_DEPTH: f64 = 0.1;
 
 fn stones(wrap: Wrap) -> Surface {
-    Surface::new(SurfaceMaps { relief_depth: RELIEF_DEPTH as f32, wrap, ..cobbles(64, 4) }).expect("valid maps")
+    Surface::new(SurfaceMaps { relief_depth: RELIEF_DEPTH as f32, wrap, ..cobbles(64, 4) })
+        .expect("valid maps")
 }
 
 fn camera() -> Camera {
@@ -97,7 +98,8 @@ fn check_against_reference(
 ) {
     let (surface, path) = (stones(Wrap::Repeat), golden_path(name));
     let color = |pixel: [u32; 2]| {
-        let [r, g, b] = of_pixel(&surface, &footprint(&surface, pixel)).map(|c| c as f32 * surface.color_scale());
+        let [r, g, b] = of_pixel(&surface, &footprint(&surface, pixel))
+            .map(|c| c as f32 * surface.color_scale());
         [r, g, b, 1.0]
     };
     if is_accepted() {
@@ -105,7 +107,8 @@ fn check_against_reference(
         for (i, pixel) in drawn.pixels.iter_mut().enumerate() {
             *pixel = color([i as u32 % SIDE, i as u32 / SIDE]);
         }
-        golden::check(&path, &drawn, Thresholds::default(), OnDifference::Accept).expect("accepted");
+        golden::check(&path, &drawn, Thresholds::default(), OnDifference::Accept)
+            .expect("accepted");
     }
     let stored = basrelief::metrics::Picture::open(&path).expect("a golden picture");
     for i in 0..SIDE {
@@ -113,12 +116,15 @@ fn check_against_reference(
         let golden = stored.pixels()[(i * SIDE + i) as usize].map(|c| (c * 255.0).round() as u8);
         assert_eq!(diagonal, golden, "{name}: the reference draws pixel {i}, {i} otherwise");
     }
-    golden::check(&path, frame, thresholds, OnDifference::Fail).unwrap_or_else(|error| panic!("{error}"));
+    golden::check(&path, frame, thresholds, OnDifference::Fail)
+        .unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// Where the ray through the middle of a pixel meets the floor in texture repeats, and its displacement.
+/// Where the ray through the middle of a pixel meets the floor in texture repeats, and its
+/// displacement.
 fn ray(pixel: [u32; 2]) -> [[f64; 2]; 2] {
-    let [x, y] = pixel.map(|c| (f64::from(c) + 0.5) / f64::from(SIDE) * 2.0 - 1.0).map(|c| c * TAN_HALF_FOV);
+    let [x, y] =
+        pixel.map(|c| (f64::from(c) + 0.5) / f64::from(SIDE) * 2.0 - 1.0).map(|c| c * TAN_HALF_FOV);
     // Right is along x; rows go down.
     let along = [FORWARD[0] + x, FORWARD[1] - UP[1] * y, FORWARD[2] - UP[2] * y];
     let down = -along[1];
@@ -183,15 +189,22 @@ fn mean_of(surface: &Surface, pixel: &Footprint, counts: impl Fn([i32; 2]) -> bo
 /// One texel's colour.
 fn texel(surface: &Surface, texel: [i32; 2]) -> [f64; 3] {
     let disc = Conic { a: 1.0, b: 0.0, c: 1.0, f: 1.0 };
-    reference::mean(surface.base(), &[texel], &disc, texel.map(|c| f64::from(c) + 0.5)).expect("one texel")
+    reference::mean(surface.base(), &[texel], &disc, texel.map(|c| f64::from(c) + 0.5))
+        .expect("one texel")
 }
 
 #[test]
 fn nearest_is_the_reference() {
-    let of_pixel =
-        |surface: &Surface, pixel: &Footprint| texel(surface, in_texels(surface, pixel.hit).map(|c| c.floor() as i32));
+    let of_pixel = |surface: &Surface, pixel: &Footprint| {
+        texel(surface, in_texels(surface, pixel.hit).map(|c| c.floor() as i32))
+    };
     let thresholds = Thresholds { tolerance: 1.5 / 255.0, share: 0.0 };
-    check_against_reference("reference_nearest", of_pixel, &filter_alone(Filter::Nearest), thresholds);
+    check_against_reference(
+        "reference_nearest",
+        of_pixel,
+        &filter_alone(Filter::Nearest),
+        thresholds,
+    );
 }
 
 #[test]
@@ -200,15 +213,24 @@ fn bilinear_is_the_reference() {
         let place = in_texels(surface, pixel.hit).map(|c| c - 0.5);
         let [x, y] = place.map(|c| c.floor() as i32);
         let [s, t] = place.map(|c| c - c.floor());
-        let parts =
-            [([0, 0], (1.0 - s) * (1.0 - t)), ([1, 0], s * (1.0 - t)), ([0, 1], (1.0 - s) * t), ([1, 1], s * t)];
+        let parts = [
+            ([0, 0], (1.0 - s) * (1.0 - t)),
+            ([1, 0], s * (1.0 - t)),
+            ([0, 1], (1.0 - s) * t),
+            ([1, 1], s * t),
+        ];
         parts.into_iter().fold([0.0; 3], |sum, ([right, down], part)| {
             let color = texel(surface, [x + right, y + down]);
             std::array::from_fn(|i| sum[i] + color[i] * part)
         })
     };
     let thresholds = Thresholds { tolerance: 1.5 / 255.0, share: 0.0 };
-    check_against_reference("reference_bilinear", of_pixel, &filter_alone(Filter::Bilinear), thresholds);
+    check_against_reference(
+        "reference_bilinear",
+        of_pixel,
+        &filter_alone(Filter::Bilinear),
+        thresholds,
+    );
 }
 
 #[test]
@@ -223,7 +245,9 @@ fn all_texels_of_an_ellipse_are_the_reference() {
 fn visible_texels_are_the_reference() {
     let of_pixel = |surface: &Surface, pixel: &Footprint| {
         let displacement = in_texels(surface, pixel.displacement);
-        mean_of(surface, pixel, |texel| reference::ray_margin(surface.base(), texel, displacement) <= 0.0)
+        mean_of(surface, pixel, |texel| {
+            reference::ray_margin(surface.base(), texel, displacement) <= 0.0
+        })
     };
     let filter = Filter::Visible(Visible { texel_budget: 0, ..Visible::default() });
     let thresholds = Thresholds { tolerance: 1.5 / 255.0, share: 0.0 };
@@ -233,7 +257,8 @@ fn visible_texels_are_the_reference() {
 #[test]
 fn the_horizon_is_the_reference() {
     let of_pixel = |surface: &Surface, pixel: &Footprint| {
-        let [center, displacement] = [pixel.base, pixel.displacement].map(|p| in_texels(surface, p));
+        let [center, displacement] =
+            [pixel.base, pixel.displacement].map(|p| in_texels(surface, p));
         let conic = ellipse(surface, pixel, 0.0);
         let lines = Lines { level: surface.base(), conic, center, displacement, spacing: 1.0 };
         // As many lines as the filter takes when it is asked for 64 texels across.
@@ -246,8 +271,11 @@ fn the_horizon_is_the_reference() {
 
 #[test]
 fn rays_and_the_default_filter_are_close_to_the_reference() {
-    let of_pixel = |surface: &Surface, pixel: &Footprint| reference::supersampled(surface, pixel, 12);
-    let unlit = |filter| draw_with(floor(Wrap::Repeat), Settings { filter, msaa: 1, ..Settings::default() });
+    let of_pixel =
+        |surface: &Surface, pixel: &Footprint| reference::supersampled(surface, pixel, 12);
+    let unlit = |filter| {
+        draw_with(floor(Wrap::Repeat), Settings { filter, msaa: 1, ..Settings::default() })
+    };
     // Both are whole frames: projection, coverage and footprints count too.
     let truth = unlit(Filter::Truth(Rays { samples: 256 }));
     // 256 rays a pixel have noise: two pixels are four steps of 255 off.
@@ -267,8 +295,12 @@ fn frames_are_the_accepted_ones() {
             Filter::Nearest | Filter::Bilinear | Filter::Truth(_) => continue,
             Filter::Trilinear(_) => ("trilinear", filter),
             Filter::Ewa(ewa) => ("ewa", Filter::Ewa(Ewa { texel_budget: 64, ..ewa })),
-            Filter::Visible(visible) => ("visible", Filter::Visible(Visible { texel_budget: 64, ..visible })),
-            Filter::Horizon(horizon) => ("horizon", Filter::Horizon(Horizon { lines: 4, ..horizon })),
+            Filter::Visible(visible) => {
+                ("visible", Filter::Visible(Visible { texel_budget: 64, ..visible }))
+            }
+            Filter::Horizon(horizon) => {
+                ("horizon", Filter::Horizon(Horizon { lines: 4, ..horizon }))
+            }
             Filter::Parallax(_) => ("parallax", Filter::Parallax(Rays { samples: 4 })),
         };
         check_frame(name, &draw(floor(Wrap::Repeat), filter));
@@ -285,7 +317,10 @@ fn lit_relief_is_the_accepted_one() {
         Light::Directional { to_light: Vec3::new(-1.0, 0.5, 0.0), intensity: Vec3::splat(0.9) },
         Light::Point { position: Vec3::new(0.0, 0.7, -1.8), intensity: Vec3::new(1.5, 1.0, 0.5) },
     ];
-    check_frame("horizon_lit", &draw_with(scene, Settings { lighting: Lighting::Lit, ..Settings::default() }));
+    check_frame(
+        "horizon_lit",
+        &draw_with(scene, Settings { lighting: Lighting::Lit, ..Settings::default() }),
+    );
 }
 
 #[test]
@@ -299,7 +334,8 @@ fn clamped_and_mirrored_maps_are_the_accepted_ones() {
 fn an_edge_of_a_mesh_is_the_accepted_one() {
     let mut scene = floor(Wrap::Repeat);
     // A plain leaf in the air: its edges are nearly upright, nearly level, and aslant.
-    let corners = [[-0.6, 0.4, -1.6], [0.5, 0.35, -1.4], [-0.5, 0.9, -2.0]].map(Vec3::from).to_vec();
+    let corners =
+        [[-0.6, 0.4, -1.6], [0.5, 0.35, -1.4], [-0.5, 0.9, -2.0]].map(Vec3::from).to_vec();
     let mut leaf = Mesh::new(corners, vec![], vec![], vec![[0, 1, 2]]);
     leaf.material = 1;
     scene.meshes.push(leaf);

@@ -1,4 +1,5 @@
-//! What the inspector says of a pixel: the paper's figures by their sets, the cut by its sums, the views of whole frames.
+//! What the inspector says of a pixel: the paper's figures by their sets, the cut by its sums, the
+//! views of whole frames.
 
 mod common;
 
@@ -6,13 +7,19 @@ use basrelief::footprint::Ellipse;
 use basrelief::inspect::{self, Cut, Figure, Inspection, View, measure};
 use basrelief::relief::HeightField;
 use basrelief::texture::{Surface, Wrap};
-use basrelief::{Derivatives, Filter, FootprintRule, Formulas, Scene, Settings, Visible, reference, scene};
+use basrelief::{
+    Derivatives, Filter, FootprintRule, Formulas, Scene, Settings, Visible, reference, scene,
+};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 fn figure(number: usize) -> (Figure, Inspection) {
     let figure = Figure::ALL[number - 1];
-    (figure, inspect::pixel(&figure.scene(), &figure.settings(), figure.pixel()).expect("the pixel sees the street"))
+    (
+        figure,
+        inspect::pixel(&figure.scene(), &figure.settings(), figure.pixel())
+            .expect("the pixel sees the street"),
+    )
 }
 
 fn street() -> Arc<Surface> {
@@ -23,7 +30,8 @@ fn set(texels: &[[i32; 2]]) -> BTreeSet<[i32; 2]> {
     texels.iter().copied().collect()
 }
 
-/// The texels of the reference's ellipse, apart from those within rounding of its edge: inside, and inside or near.
+/// The texels of the reference's ellipse, apart from those within rounding of its edge: inside, and
+/// inside or near.
 fn reference_texels(seen: &Inspection, projected: &inspect::Projected) -> [BTreeSet<[i32; 2]>; 2] {
     let hit = [0, 1].map(|i| f64::from(seen.ray.hit[i] * seen.sets.texels_per_repeat[i]));
     let near = reference::texels(&reference::Conic::from(&projected.widened), hit, 1e-3);
@@ -38,12 +46,16 @@ fn figure_1_the_ray_meets_no_relief_before_the_hit() {
     let texels = seen.sets.texels_per_repeat.map(f64::from);
     // How far the ray is above the relief at a part of the relief depth.
     let gap = |depth: f64| {
-        let [u, v] = [0, 1].map(|i| f64::from(seen.ray.base[i]) + f64::from(seen.ray.displacement[i]) * depth);
+        let [u, v] = [0, 1]
+            .map(|i| f64::from(seen.ray.base[i]) + f64::from(seen.ray.displacement[i]) * depth);
         1.0 - depth - field.height_at(u * texels[0], v * texels[1])
     };
     let hit = f64::from(seen.ray.hit_depth);
     assert!(hit > 0.1 && hit < 0.9, "the figure shows a hit within the relief: {hit}");
-    assert!((0..2000).all(|i| gap(hit * f64::from(i) / 2000.0) > -1e-3), "the ray is above the relief before the hit");
+    assert!(
+        (0..2000).all(|i| gap(hit * f64::from(i) / 2000.0) > -1e-3),
+        "the ray is above the relief before the hit"
+    );
     assert!(gap(hit).abs() < 2e-3, "and on it at the hit: {}", gap(hit));
     for i in 0..2 {
         let moved = seen.ray.base[i] + seen.ray.displacement[i] * seen.ray.hit_depth;
@@ -72,7 +84,10 @@ fn figure_3_the_relief_changes_shape_and_area() {
     assert_ne!(all, set(&flat.sets.all));
     let ratio = seen.readings[0].relief.area / flat.readings[0].flat.area;
     assert!(!(0.67..1.5).contains(&ratio), "the area changes visibly: {ratio}");
-    assert_eq!(flat.readings[0].flat.dx, seen.readings[0].flat.dx, "formula (2) knows nothing of the relief");
+    assert_eq!(
+        flat.readings[0].flat.dx, seen.readings[0].flat.dx,
+        "formula (2) knows nothing of the relief"
+    );
 }
 
 /// Every texel of T by a ray of the reference, which decides all but ties.
@@ -115,7 +130,8 @@ fn figure_5_each_texel_that_must_not_count_has_a_visible_one_before_it() {
         assert!(towards_eye > 0.0, "{texel:?} is covered from behind, by {coverer:?}");
         // A chain of coverers may step aside by a texel at each link.
         assert!(aside <= towards_eye, "{texel:?} is covered from aside, by {coverer:?}");
-        let margin = reference::ray_margin(surface.base(), *coverer, seen.sets.displacement.map(f64::from));
+        let margin =
+            reference::ray_margin(surface.base(), *coverer, seen.sets.displacement.map(f64::from));
         assert!(margin <= reference::RAY_TIE, "what is seen in its place is visible: {coverer:?}");
     }
 }
@@ -138,23 +154,31 @@ fn readings_are_the_references_formulas() {
     for number in [2, 3, 5] {
         let (_, seen) = figure(number);
         for reading in &seen.readings {
-            for (projected, derivatives) in [(&reading.flat, Derivatives::Flat), (&reading.relief, Derivatives::Relief)]
+            for (projected, derivatives) in
+                [(&reading.flat, Derivatives::Flat), (&reading.relief, Derivatives::Relief)]
             {
                 let [left, right] = reading.row;
                 let [upper, lower] = reading.column;
                 let of = |here: inspect::Corner, other: inspect::Corner| {
                     let uv = [here.uv, other.uv, other.uv];
                     let offsets = [here.offset, other.offset, other.offset];
-                    let rule = FootprintRule { derivatives, formulas: reading.formulas, ..FootprintRule::FLAT };
+                    let rule = FootprintRule {
+                        derivatives,
+                        formulas: reading.formulas,
+                        ..FootprintRule::FLAT
+                    };
                     reference::derivatives(uv, offsets, &rule)
                 };
                 let ([ux, vx, ..], [.., uy, vy]) = (of(left, right), of(upper, lower));
                 assert_eq!((projected.dx, projected.dy), ([ux, vx], [uy, vy]), "{reading:?}");
                 let texels = seen.sets.texels_per_repeat;
-                let scaled = [ux * texels[0], vx * texels[1], uy * texels[0], vy * texels[1]].map(f64::from);
+                let scaled =
+                    [ux * texels[0], vx * texels[1], uy * texels[0], vy * texels[1]].map(f64::from);
                 let expected = reference::Conic::new(scaled, reading.formulas);
                 let Ellipse { a, b, c, f } = projected.conic;
-                for (ours, theirs) in [(a, expected.a), (b, expected.b), (c, expected.c), (f, expected.f)] {
+                for (ours, theirs) in
+                    [(a, expected.a), (b, expected.b), (c, expected.c), (f, expected.f)]
+                {
                     let scale = expected.a.abs().max(expected.c.abs()).max(expected.f.abs());
                     assert!((f64::from(ours) - theirs).abs() <= 1e-5 * scale, "{ours} {theirs}");
                 }
@@ -173,7 +197,9 @@ fn pixels() -> impl Iterator<Item = Inspection> {
     let scene = scene::builtin();
     let settings = Settings { width: 320, height: 180, ..Settings::default() };
     let places = [[20, 175], [61, 160], [103, 150], [200, 170], [301, 179], [40, 130], [280, 140]];
-    places.into_iter().map(move |pixel| inspect::pixel(&scene, &settings, pixel).expect("the street"))
+    places
+        .into_iter()
+        .map(move |pixel| inspect::pixel(&scene, &settings, pixel).expect("the street"))
 }
 
 #[test]
@@ -183,7 +209,11 @@ fn visible_lengths_add_up_to_the_ellipse() {
         let sum: f64 = points.iter().map(|point| point.visible).sum();
         assert!((sum - (exit - entry)).abs() < 1e-9, "{:?}: {sum} of {}", seen.pixel, exit - entry);
         assert!(points.windows(2).all(|p| p[1].horizon >= p[0].horizon && p[1].along > p[0].along));
-        assert!(points.iter().all(|p| p.visible >= 0.0 && (0.0..=1.0).contains(&p.depth) && p.projected <= p.along));
+        assert!(
+            points.iter().all(|p| p.visible >= 0.0
+                && (0.0..=1.0).contains(&p.depth)
+                && p.projected <= p.along)
+        );
         let [num_seen, num] = seen.cut.num_seen();
         assert!(num_seen >= 1 && num_seen <= num);
     }
@@ -193,10 +223,19 @@ fn visible_lengths_add_up_to_the_ellipse() {
 fn the_horizon_passes_the_ray_where_the_ray_hits() {
     for seen in pixels().filter(|seen| seen.sets.level == 0) {
         // The first row that is seen at or behind the ray's place on the polygon.
-        let first = seen.cut.points.iter().find(|point| point.projected >= 0.0).expect("the walk ends behind the hit");
+        let first = seen
+            .cut
+            .points
+            .iter()
+            .find(|point| point.projected >= 0.0)
+            .expect("the walk ends behind the hit");
         let [along, _] = seen.cut.hit;
         let row = seen.cut.points[1].along - seen.cut.points[0].along;
-        assert!(along <= first.along + 0.1 * row && along >= first.along - 1.5 * row, "{along} and {}", first.along);
+        assert!(
+            along <= first.along + 0.1 * row && along >= first.along - 1.5 * row,
+            "{along} and {}",
+            first.along
+        );
     }
 }
 
@@ -205,7 +244,11 @@ fn flat_relief_hides_nothing() {
     let scene = common::floor_scene(common::flat_surface(64, 64, Wrap::Repeat, 3), 1.0);
     let settings = Settings { width: 64, height: 36, ..Settings::default() };
     let seen = inspect::pixel(&scene, &settings, [30, 30]).unwrap();
-    assert!(seen.sets.hidden.is_empty() && seen.sets.counted_twice.is_empty() && seen.sets.skipped.is_empty());
+    assert!(
+        seen.sets.hidden.is_empty()
+            && seen.sets.counted_twice.is_empty()
+            && seen.sets.skipped.is_empty()
+    );
     assert_eq!((seen.ray.hit, seen.ray.hit_depth, seen.relief_depth), (seen.ray.base, 0.0, 0.0));
     assert!(seen.cut.points.iter().all(|point| point.depth == 0.0));
 }
@@ -214,10 +257,14 @@ fn flat_relief_hides_nothing() {
 fn what_cannot_be_inspected_is_named() {
     let scene = scene::builtin();
     let settings = Settings { width: 64, height: 36, ..Settings::default() };
-    for (pixel, reason) in [([5, 2], "sees no surface"), ([64, 0], "outside the frame of 64x36"), ([0, 36], "outside")]
+    for (pixel, reason) in
+        [([5, 2], "sees no surface"), ([64, 0], "outside the frame of 64x36"), ([0, 36], "outside")]
     {
         let text = inspect::pixel(&scene, &settings, pixel).unwrap_err().to_string();
-        assert!(text.contains(&format!("pixel {},{}", pixel[0], pixel[1])) && text.contains(reason), "{text}");
+        assert!(
+            text.contains(&format!("pixel {},{}", pixel[0], pixel[1])) && text.contains(reason),
+            "{text}"
+        );
     }
     let plain = Scene { materials: vec![basrelief::Material::default(); 2], ..scene };
     let text = inspect::pixel(&plain, &settings, [20, 34]).unwrap_err().to_string();
@@ -230,7 +277,8 @@ fn views_say_of_a_pixel_what_the_inspector_says() {
     let filter = Filter::Visible(Visible { max_stretch: 0.0, ..Visible::default() });
     let settings = Settings { width: 80, height: 45, filter, ..Settings::default() };
     let of = |view| measure(&scene, &settings, view).unwrap();
-    let (visible, footprint, mip, uv) = (of(View::Visible), of(View::Footprint), of(View::Mip), of(View::Uv));
+    let (visible, footprint, mip, uv) =
+        (of(View::Visible), of(View::Footprint), of(View::Mip), of(View::Uv));
     let mut num = 0;
     for (i, value) in visible.pixels.iter().enumerate().step_by(37) {
         let pixel = [i as u32 % 80, i as u32 / 80];
@@ -240,7 +288,10 @@ fn views_say_of_a_pixel_what_the_inspector_says() {
         };
         num += 1;
         let sets = &seen.sets;
-        assert_eq!(value.unwrap()[..2], [sets.visible.len() as f32 / sets.all.len() as f32, sets.all.len() as f32]);
+        assert_eq!(
+            value.unwrap()[..2],
+            [sets.visible.len() as f32 / sets.all.len() as f32, sets.all.len() as f32]
+        );
         assert_eq!(mip.pixels[i].unwrap()[0], sets.level as f32);
         assert_eq!(uv.pixels[i].unwrap()[..2], seen.ray.hit);
         let area = footprint.pixels[i].unwrap()[0];
@@ -254,7 +305,8 @@ fn views_of_geometry_are_right_on_a_floor() {
     let scene = common::floor_scene(common::flat_surface(64, 64, Wrap::Repeat, 3), 1.0);
     let settings = Settings { width: 64, height: 36, msaa: 4, ..Settings::default() };
     let of = |view| measure(&scene, &settings, view).unwrap().pixels;
-    let (normal, depth, uv, coverage) = (of(View::Normal), of(View::Depth), of(View::Uv), of(View::Coverage));
+    let (normal, depth, uv, coverage) =
+        (of(View::Normal), of(View::Depth), of(View::Uv), of(View::Coverage));
     let camera = scene.camera;
     let [right, up, forward] = camera.axes();
     let focal = camera.focal_pixels(36);
@@ -271,8 +323,14 @@ fn views_of_geometry_are_right_on_a_floor() {
         num += 1;
     }
     assert!(num > 800);
-    assert!(coverage.iter().flatten().any(|c| c[0] == 2.0), "the diagonal's pixels see both triangles");
-    assert!(coverage.iter().flatten().any(|c| c[1] < 1.0), "the skyline's pixels are covered in part");
+    assert!(
+        coverage.iter().flatten().any(|c| c[0] == 2.0),
+        "the diagonal's pixels see both triangles"
+    );
+    assert!(
+        coverage.iter().flatten().any(|c| c[1] < 1.0),
+        "the skyline's pixels are covered in part"
+    );
 }
 
 #[test]
@@ -283,11 +341,14 @@ fn relief_moves_the_depth_behind_the_polygon() {
         measure(&scene, &settings, View::Depth).unwrap().pixels
     };
     let (flat, relief) = (of(false), of(true));
-    let pairs: Vec<_> = flat.iter().flatten().zip(relief.iter().flatten()).map(|(f, r)| (f[0], r[0])).collect();
+    let pairs: Vec<_> =
+        flat.iter().flatten().zip(relief.iter().flatten()).map(|(f, r)| (f[0], r[0])).collect();
     assert!(
-        pairs.iter().all(|(flat, relief)| relief >= flat) && pairs.iter().any(|(flat, relief)| *relief > flat * 1.01)
+        pairs.iter().all(|(flat, relief)| relief >= flat)
+            && pairs.iter().any(|(flat, relief)| *relief > flat * 1.01)
     );
-    // The relief is a tenth of a unit deep, and the eye 1.6 above the floor: the way grows by a sixteenth at the most.
+    // The relief is a tenth of a unit deep, and the eye 1.6 above the floor: the way grows by a
+    // sixteenth at the most.
     assert!(pairs.iter().all(|(flat, relief)| *relief <= flat * (1.0 + 0.1 / 1.6 + 1e-3)));
 }
 

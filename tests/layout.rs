@@ -1,8 +1,9 @@
-//! The law of the house: a room imports only from the rooms that `docs/architecture.md` lists for it, and no files import
-//! each other in a circle.
+//! The law of the house: a room imports only from the rooms that `docs/architecture.md` lists for
+//! it, and no files import each other in a circle.
 //!
-//! Read from the text of `src`: every `use` and every path that begins with `crate::`, `super::` or `self::`, tests left
-//! out. A name that a `mod.rs` only hands on counts as imported from the file that defines it.
+//! Read from the text of `src`: every `use` and every path that begins with `crate::`, `super::` or
+//! `self::`, tests left out. A name that a `mod.rs` only hands on counts as imported from the file
+//! that defines it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -25,7 +26,10 @@ impl House {
     }
 
     fn read_folder(&mut self, folder: &Path, module: &str) {
-        for entry in fs::read_dir(folder).expect("a folder of src").map(|entry| entry.expect("an entry").path()) {
+        for entry in fs::read_dir(folder)
+            .expect("a folder of src")
+            .map(|entry| entry.expect("an entry").path())
+        {
             let name = entry.file_stem().expect("a name").to_string_lossy().into_owned();
             let inner = join(module, &name);
             if entry.is_dir() {
@@ -67,9 +71,11 @@ impl House {
                 at = inner;
             } else if depth < 8 {
                 // Not a module: an item, which may be handed on from elsewhere.
-                let handed_on = paths(&self.texts[&at]).into_iter().filter(|path| path.last() == Some(name));
-                let origin =
-                    handed_on.filter(|path| path.len() > 1).find_map(|path| self.resolve(&at, &path, depth + 1));
+                let handed_on =
+                    paths(&self.texts[&at]).into_iter().filter(|path| path.last() == Some(name));
+                let origin = handed_on
+                    .filter(|path| path.len() > 1)
+                    .find_map(|path| self.resolve(&at, &path, depth + 1));
                 return Some(origin.unwrap_or(at));
             } else {
                 return Some(at);
@@ -96,13 +102,18 @@ fn room(module: &str) -> &str {
 /// A file without comments, without the tests at its end, and without who may see what.
 fn code_of(text: &str) -> String {
     let code = text.split("#[cfg(test)]").next().unwrap_or("");
-    let code = code.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
+    let code = code
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or(""))
+        .collect::<Vec<_>>()
+        .join("\n");
     let mut parts = code.split("pub(in ");
     let first = parts.next().unwrap_or("").to_string();
     parts.fold(first, |code, part| code + "pub" + part.split_once(')').map_or("", |(_, rest)| rest))
 }
 
-/// Every path that a `use` brings in, and every other one that begins at the crate, the parent or the module itself.
+/// Every path that a `use` brings in, and every other one that begins at the crate, the parent or
+/// the module itself.
 fn paths(code: &str) -> Vec<Vec<String>> {
     let mut paths = Vec::new();
     for statement in code.split(';') {
@@ -125,7 +136,12 @@ fn expand(tree: &str, before: &[String], paths: &mut Vec<Vec<String>>) {
     let head = tree.find('{').map_or(tree, |brace| &tree[..brace]);
     let mut path = before.to_vec();
     let name = head.split(" as ").next().unwrap_or("").trim();
-    path.extend(name.split("::").map(str::trim).filter(|name| !name.is_empty() && *name != "self").map(String::from));
+    path.extend(
+        name.split("::")
+            .map(str::trim)
+            .filter(|name| !name.is_empty() && *name != "self")
+            .map(String::from),
+    );
     if name.starts_with("self::") {
         path.insert(0, "self".into());
     }
@@ -146,15 +162,19 @@ fn expand(tree: &str, before: &[String], paths: &mut Vec<Vec<String>>) {
 
 fn inline_paths(code: &str) -> Vec<Vec<String>> {
     let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
-    let words =
-        code.split(|c| !is_name(c)).filter(|word| ["crate::", "super::", "self::"].iter().any(|s| word.starts_with(s)));
-    words.map(|word| word.split("::").filter(|name| !name.is_empty()).map(String::from).collect()).collect()
+    let words = code
+        .split(|c| !is_name(c))
+        .filter(|word| ["crate::", "super::", "self::"].iter().any(|s| word.starts_with(s)));
+    words
+        .map(|word| word.split("::").filter(|name| !name.is_empty()).map(String::from).collect())
+        .collect()
 }
 
 /// The rooms that each room may import from, by the table of `docs/architecture.md`.
 fn law() -> BTreeMap<String, BTreeSet<String>> {
     let text =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md")).expect("the page");
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md"))
+            .expect("the page");
     let rows = text.lines().skip_while(|line| !line.starts_with("| room | may import |")).skip(2);
     let rows = rows.take_while(|line| line.starts_with('|'));
     rows.map(|row| {
@@ -168,7 +188,8 @@ fn law() -> BTreeMap<String, BTreeSet<String>> {
 #[test]
 fn rooms_import_only_what_the_law_lists() {
     let (house, law) = (House::read(), law());
-    let rooms: BTreeSet<_> = house.texts.keys().map(|module| room(module)).filter(|room| !room.is_empty()).collect();
+    let rooms: BTreeSet<_> =
+        house.texts.keys().map(|module| room(module)).filter(|room| !room.is_empty()).collect();
     let listed: BTreeSet<_> = law.keys().map(String::as_str).collect();
     assert_eq!(rooms, listed, "the rooms of src and those of the table");
     let mut broken = Vec::new();
@@ -187,7 +208,8 @@ fn rooms_import_only_what_the_law_lists() {
 #[test]
 fn the_law_has_no_way_back() {
     let law = law();
-    let to: BTreeMap<_, _> = law.iter().map(|(room, may)| (room.clone(), may.iter().cloned().collect())).collect();
+    let to: BTreeMap<_, _> =
+        law.iter().map(|(room, may)| (room.clone(), may.iter().cloned().collect())).collect();
     assert_eq!(circle(&to), None);
 }
 
@@ -201,7 +223,12 @@ fn no_files_import_each_other_in_a_circle() {
 
 /// A way from a node back to itself, if there is one.
 fn circle(to: &BTreeMap<String, Vec<String>>) -> Option<Vec<String>> {
-    fn walk(at: &str, to: &BTreeMap<String, Vec<String>>, way: &mut Vec<String>, done: &mut BTreeSet<String>) -> bool {
+    fn walk(
+        at: &str,
+        to: &BTreeMap<String, Vec<String>>,
+        way: &mut Vec<String>,
+        done: &mut BTreeSet<String>,
+    ) -> bool {
         if let Some(start) = way.iter().position(|node| node == at) {
             way.drain(..start);
             return true;
@@ -225,7 +252,10 @@ fn circle(to: &BTreeMap<String, Vec<String>>) -> Option<Vec<String>> {
 fn paths_are_read_from_the_text() {
     let code = "pub use crate::a::{b::C, self, d::{E, F as G}};\n#[inline]\npub(super) fn f() { super::h::i(); x::y }";
     let found: Vec<_> = paths(code).into_iter().map(|path| path.join("::")).collect();
-    assert_eq!(found, ["crate::a::b::C", "crate::a", "crate::a::d::E", "crate::a::d::F", "super::h::i"]);
+    assert_eq!(
+        found,
+        ["crate::a::b::C", "crate::a", "crate::a::d::E", "crate::a::d::F", "super::h::i"]
+    );
 }
 
 #[test]
@@ -236,5 +266,8 @@ fn circles_are_found() {
         to
     };
     assert_eq!(circle(&to(&[("a", "b"), ("b", "c"), ("a", "c")])), None);
-    assert_eq!(circle(&to(&[("a", "b"), ("b", "c"), ("c", "b")])), Some(vec!["b".into(), "c".into()]));
+    assert_eq!(
+        circle(&to(&[("a", "b"), ("b", "c"), ("c", "b")])),
+        Some(vec!["b".into(), "c".into()])
+    );
 }

@@ -8,7 +8,9 @@ mod common;
 
 use basrelief::inspect::{self, Measured, View, measure};
 use basrelief::texture::{HeightImage, Surface, SurfaceMaps};
-use basrelief::{Ewa, Filter, Frame, Horizon, Lighting, Rays, Renderer, Scene, Settings, Stats, Visible};
+use basrelief::{
+    Ewa, Filter, Frame, Horizon, Lighting, Rays, Renderer, Scene, Settings, Stats, Visible,
+};
 use common::{cobbles, floor_scene};
 use glam::Vec3;
 use std::collections::BTreeSet;
@@ -57,7 +59,8 @@ fn settings(filter: Filter) -> Settings {
 
 fn draw(scene: &Scene, settings: &Settings) -> (Frame, Stats) {
     let mut frame = Frame::default();
-    let mut renderer = Renderer::new(scene.clone(), settings.clone()).expect("a valid scene and settings");
+    let mut renderer =
+        Renderer::new(scene.clone(), settings.clone()).expect("a valid scene and settings");
     let stats = renderer.render_timed(&mut frame, &|| 0.0);
     (frame, stats)
 }
@@ -155,21 +158,27 @@ fn check(surface: &Surface, settings: &Settings) -> Told {
 #[test]
 fn frames_read_the_levels_that_are_named() {
     let (stones, mounds) = (stones(), mounds());
-    let ways = [(Lighting::Unlit, &stones, false), (Lighting::Unlit, &mounds, true), (Lighting::Lit, &mounds, true)];
+    let ways = [
+        (Lighting::Unlit, &stones, false),
+        (Lighting::Unlit, &mounds, true),
+        (Lighting::Lit, &mounds, true),
+    ];
     for filter in filters() {
         for (lighting, surface, keeps_all) in ways {
             let told = check(surface, &Settings { lighting, ..settings(filter) });
             let (levels, num_blended) = (told.different_levels(), told.num_blended());
             let (num, num_tables) = (told.levels.len(), told.num_tables);
-            println!("{filter:?} {lighting:?}: levels {levels:?} at {num} pixels, {num_tables} by tables");
+            println!(
+                "{filter:?} {lighting:?}: levels {levels:?} at {num} pixels, {num_tables} by tables"
+            );
             let least = if keeps_all { least_num_levels(&filter) } else { 1 };
             assert!(levels.len() >= least, "{filter:?}: {levels:?}");
             assert!(num > 100, "{filter:?}: {num} pixels");
             let blends = matches!(filter, Filter::Trilinear(_) | Filter::Parallax(_));
             assert_eq!(num_blended > 100, blends, "{filter:?}: {num_blended} are blended");
             // Tables hold unlit colours.
-            let has_tables =
-                lighting == Lighting::Unlit && matches!(filter, Filter::Horizon(Horizon { far_field: true, .. }));
+            let has_tables = lighting == Lighting::Unlit
+                && matches!(filter, Filter::Horizon(Horizon { far_field: true, .. }));
             assert_eq!(num_tables > 100, has_tables, "{filter:?}: {num_tables} by tables");
         }
     }
@@ -200,7 +209,10 @@ fn the_texels_shown_are_those_that_frames_test() {
             }
             assert_eq!(num_tested, stats.texels_tested, "{visible:?}");
             assert_eq!(num_visible, stats.texels_visible, "{visible:?}");
-            assert!(num_visible * 4 < num_tested * 3, "much is hidden: {num_visible} of {num_tested}");
+            assert!(
+                num_visible * 4 < num_tested * 3,
+                "much is hidden: {num_visible} of {num_tested}"
+            );
         }
     }
 }
@@ -235,7 +247,8 @@ fn the_cut_is_made_on_the_level_that_is_named() {
     // The horizon's own level is another one here and there, and its rows are others.
     let horizon = Filter::Horizon(Horizon { far_field: false, ..Horizon::default() });
     let horizon = cuts(&scene, &settings(horizon));
-    let (same, other): (Vec<_>, Vec<_>) = horizon.into_iter().partition(|(.., is_same, _)| *is_same);
+    let (same, other): (Vec<_>, Vec<_>) =
+        horizon.into_iter().partition(|(.., is_same, _)| *is_same);
     println!("horizon: {} on the level of the sets, {} on others", same.len(), other.len());
     assert!(same.iter().all(|(shown, inspected, ..)| shown == inspected));
     assert!(other.iter().all(|(shown, inspected, ..)| shown[1] != inspected[1]));

@@ -2,11 +2,14 @@
 
 use basrelief::Error;
 use basrelief::load::{
-    HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY, load, load_obj_bytes, load_reporting,
+    HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY, load, load_obj_bytes,
+    load_reporting,
 };
 use basrelief::texture::{Surface, Wrap};
 use glam::{Vec2, Vec3};
-use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Rgb, Rgb32FImage, RgbImage, Rgba, RgbaImage};
+use image::{
+    DynamicImage, GrayImage, ImageBuffer, Luma, Rgb, Rgb32FImage, RgbImage, Rgba, RgbaImage,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -23,7 +26,10 @@ struct Files {
 
 impl Files {
     fn new(obj: &str, mtl: &str) -> Self {
-        let files = Self { folder: tempfile::tempdir().expect("a folder"), options: LoadOptions::default() };
+        let files = Self {
+            folder: tempfile::tempdir().expect("a folder"),
+            options: LoadOptions::default(),
+        };
         files.write("s.obj", obj);
         files.write("s.mtl", mtl);
         files
@@ -71,7 +77,9 @@ impl Files {
     fn heights(&self) -> Vec<i32> {
         let surface = self.surface();
         let base = surface.base();
-        (0..base.size()[0] as i32).map(|x| (base.height_at(x, 0) * 65535.0).round() as i32).collect()
+        (0..base.size()[0] as i32)
+            .map(|x| (base.height_at(x, 0) * 65535.0).round() as i32)
+            .collect()
     }
 }
 
@@ -91,7 +99,8 @@ fn has(lines: &[String], part: &str) -> bool {
 
 #[test]
 fn polygons_become_fans_with_normals_and_tangents() {
-    let loaded = Files::new("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\n", "").load();
+    let loaded =
+        Files::new("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\n", "").load();
     let mesh = &loaded.scene.meshes[0];
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
     assert!(mesh.normals.iter().all(|n| n.abs_diff_eq(Vec3::Z, 1e-6)));
@@ -102,7 +111,8 @@ fn polygons_become_fans_with_normals_and_tangents() {
 
 #[test]
 fn made_normals_know_no_seams_and_edges_by_the_crease_angle() {
-    // A roof of 90 degrees whose ridge, from (0, 1, 0) to (0, 1, 1), has its own texture coordinates on either side.
+    // A roof of 90 degrees whose ridge, from (0, 1, 0) to (0, 1, 1), has its own texture
+    // coordinates on either side.
     let faces = "usemtl a\nf 1/1 3/3 4/4 2/2\nusemtl b\nf 1/5 2/6 6/4 5/3\n";
     let obj = "mtllib s.mtl\nv 0 1 0\nv 0 1 1\nv -1 0 0\nv -1 0 1\nv 1 0 0\nv 1 0 1\n\
                vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvt 5 0\nvt 6 0\n";
@@ -112,18 +122,25 @@ fn made_normals_know_no_seams_and_edges_by_the_crease_angle() {
         let meshes = files.load().scene.meshes;
         for (mesh, x) in meshes.iter().zip(at_ridge) {
             let ridge = mesh.positions.iter().zip(&mesh.normals).filter(|(p, _)| p.y == 1.0);
-            assert!(ridge.map(|(_, normal)| normal.x / normal.y).all(|slope| (slope - x).abs() < 1e-6), "{meshes:?}");
+            assert!(
+                ridge.map(|(_, normal)| normal.x / normal.y).all(|slope| (slope - x).abs() < 1e-6),
+                "{meshes:?}"
+            );
         }
     }
     for crease_angle in [-1.0, 180.5, f32::NAN] {
         files.options.crease_angle = crease_angle;
-        assert!(files.try_load().unwrap_err().to_string().contains("crease_angle"), "{crease_angle}");
+        assert!(
+            files.try_load().unwrap_err().to_string().contains("crease_angle"),
+            "{crease_angle}"
+        );
     }
 }
 
 #[test]
 fn negative_indices_count_from_the_end() {
-    let mesh = &Files::new("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n", "").load().scene.meshes[0];
+    let mesh =
+        &Files::new("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n", "").load().scene.meshes[0];
     assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
 }
 
@@ -138,16 +155,19 @@ fn objects_and_materials_of_one_file_become_meshes() {
 
 #[test]
 fn lines_and_points_are_ignored() {
-    let loaded = Files::new("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\np 1 2\nf 1 2\nf 1 2 3\n", "").load();
+    let loaded =
+        Files::new("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\np 1 2\nf 1 2\nf 1 2 3\n", "").load();
     assert_eq!(loaded.scene.meshes.len(), 1);
     assert_eq!(loaded.scene.meshes[0].triangles.len(), 1);
 }
 
 #[test]
 fn faces_with_and_without_texture_coordinates_are_kept_apart() {
-    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 1 2 3\nf 1/1 2 3/3\n";
+    let obj =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 1 2 3\nf 1/1 2 3/3\n";
     let loaded = Files::new(obj, "").load();
-    let counts: Vec<_> = loaded.scene.meshes.iter().map(|m| (m.triangles.len(), m.tex_coords.len())).collect();
+    let counts: Vec<_> =
+        loaded.scene.meshes.iter().map(|m| (m.triangles.len(), m.tex_coords.len())).collect();
     assert_eq!(counts, [(1, 3), (2, 0)]);
 }
 
@@ -156,7 +176,10 @@ fn what_exporters_write_besides_is_put_up_with() {
     let mut obj =
         b"\xef\xbb\xbf# caf\xe9\r\nv 0 0 0 1 0 0\r\nv 1 0 0\r\nv 0 1 0 # top\r\ns 1\r\n\tf 1 2 \\\r\n3 # face\r\n"
             .to_vec();
-    assert_eq!(load_obj_bytes(&obj, &LoadOptions::default()).expect("loads").scene.meshes[0].triangles, [[0, 1, 2]]);
+    assert_eq!(
+        load_obj_bytes(&obj, &LoadOptions::default()).expect("loads").scene.meshes[0].triangles,
+        [[0, 1, 2]]
+    );
     obj.extend(b"vn 0 0 0\nf 1//1 2//1 3//1\n");
     let loaded = load_obj_bytes(&obj, &LoadOptions::default()).expect("loads");
     assert_eq!(loaded.scene.meshes[1].normals[0], Vec3::Z, "a normal without direction is made");
@@ -248,7 +271,10 @@ fn norm_and_map_kn_are_normal_maps_with_green_up_or_down() {
         files.options.all.normal_y = Some(NormalY::Down);
         assert_ne!(up, format!("{:?}", files.surface().base()), "{line}");
         files.options.keep_normals = false;
-        assert!(files.load().scene.materials[0].surface.is_none(), "nothing else is in the material");
+        assert!(
+            files.load().scene.materials[0].surface.is_none(),
+            "nothing else is in the material"
+        );
     }
 }
 
@@ -265,7 +291,8 @@ fn bm_is_the_depth_unless_the_caller_says_another() {
 
 /// Texels are packed in 15 bits: 16-bit values come back to within one.
 fn assert_near(found: &[i32], expected: &[i32]) {
-    let is_near = found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| a.abs_diff(*b) <= 1);
+    let is_near = found.len() == expected.len()
+        && found.iter().zip(expected).all(|(a, b)| a.abs_diff(*b) <= 1);
     assert!(is_near, "{found:?} for {expected:?}");
 }
 
@@ -283,7 +310,11 @@ fn imfchan_picks_the_channel() {
     for (channel, height) in [("r", 10), ("g", 20), ("b", 30), ("m", 40), ("z", 10), ("l", 19)] {
         let files = Files::quad(&format!("disp -imfchan {channel} h.png"));
         files.image("h.png", RgbaImage::from_pixel(2, 2, Rgba([10, 20, 30, 40])));
-        assert!((files.heights()[0] - height * 257).abs() < 200, "{channel}: {:?}", files.heights());
+        assert!(
+            (files.heights()[0] - height * 257).abs() < 200,
+            "{channel}: {:?}",
+            files.heights()
+        );
     }
 }
 
@@ -304,15 +335,21 @@ fn unsupported_options_are_named_with_their_line() {
     let files = Files::quad("map_Kd -blendu off -type sphere a.png");
     files.image("a.png", one(1, 2, 3));
     let loaded = files.load();
-    assert!(has(&loaded.warnings, "s.mtl:2: option -blendu of map_Kd is not supported"), "{:?}", loaded.warnings);
+    assert!(
+        has(&loaded.warnings, "s.mtl:2: option -blendu of map_Kd is not supported"),
+        "{:?}",
+        loaded.warnings
+    );
     assert!(has(&loaded.warnings, "-type") && loaded.scene.materials[0].surface.is_some());
 }
 
 #[test]
 fn equal_maps_share_a_surface() {
     let obj = format!("{QUAD}usemtl other\nf 1/1 2/2 3/3\nusemtl third\nf 1/1 2/2 3/3\n");
-    let files =
-        Files::new(&obj, "newmtl stone\nmap_Kd a.png\nnewmtl other\nmap_Kd ./a.png\nnewmtl third\nmap_Kd b.png\n");
+    let files = Files::new(
+        &obj,
+        "newmtl stone\nmap_Kd a.png\nnewmtl other\nmap_Kd ./a.png\nnewmtl third\nmap_Kd b.png\n",
+    );
     files.image("a.png", one(1, 2, 3));
     files.image("b.png", one(1, 2, 3));
     let materials = files.load().scene.materials;
@@ -343,10 +380,16 @@ fn files_that_the_caller_names_replace_the_materials_own() {
 #[test]
 fn sixteen_bit_gray_does_not_go_through_eight_bits() {
     let files = Files::quad("disp h.png");
-    files.image("h.png", ImageBuffer::from_fn(3, 1, |x, _| Luma([[1_u16, 40001, 65535][x as usize]])));
+    files.image(
+        "h.png",
+        ImageBuffer::from_fn(3, 1, |x, _| Luma([[1_u16, 40001, 65535][x as usize]])),
+    );
     assert_near(&files.heights(), &[1, 40001, 65535]);
     files.write("s.mtl", "newmtl stone\ndisp h.tif\n");
-    files.image("h.tif", ImageBuffer::from_fn(3, 1, |x, _| Luma([[1_u16, 40001, 65535][x as usize]])));
+    files.image(
+        "h.tif",
+        ImageBuffer::from_fn(3, 1, |x, _| Luma([[1_u16, 40001, 65535][x as usize]])),
+    );
     assert_near(&files.heights(), &[1, 40001, 65535]);
 }
 
@@ -383,7 +426,10 @@ fn an_exr_of_one_channel_is_a_height_map() {
 fn high_dynamic_range_keeps_its_scale() {
     for name in ["a.exr", "a.hdr"] {
         let files = Files::quad(&format!("map_Kd {name}"));
-        files.image(name, Rgb32FImage::from_fn(2, 1, |x, _| Rgb([[0.5, 8.0][x as usize], 0.25, 0.0])));
+        files.image(
+            name,
+            Rgb32FImage::from_fn(2, 1, |x, _| Rgb([[0.5, 8.0][x as usize], 0.25, 0.0])),
+        );
         assert_eq!(files.surface().color_scale(), 8.0, "{name}");
     }
 }
@@ -402,7 +448,11 @@ fn any_size_and_maps_of_different_sizes() {
 fn a_missing_texture_or_mtl_is_a_warning() {
     let files = Files::quad("Kd 1 0 0\nmap_Kd ../gone.png");
     let loaded = files.load();
-    assert!(has(&loaded.warnings, "s.mtl:3: map_Kd '../gone.png' is missing"), "{:?}", loaded.warnings);
+    assert!(
+        has(&loaded.warnings, "s.mtl:3: map_Kd '../gone.png' is missing"),
+        "{:?}",
+        loaded.warnings
+    );
     assert!(loaded.scene.materials[0].surface.is_none());
     fs::remove_file(files.path("s.mtl")).expect("removed");
     assert!(has(&files.load().warnings, "s.mtl: no such file"));
@@ -431,8 +481,14 @@ fn an_index_out_of_range_is_refused_with_its_line() {
         ("f 1 2 -4", "s.obj:5: index -4 is out of range: only 3 so far"),
         ("f 1/1 2/9 3/1", "s.obj:5: index 9 is out of range: 1 exist"),
         ("f 1//1 2//1 3//1", "s.obj:5: names normals, and the file has none"),
-        ("f 1/-9223372036854775808 2/1 3/1", "s.obj:5: index -9223372036854775808 is out of range: only 1 so far"),
-        ("f 1/9223372036854775807 2/1 3/1", "s.obj:5: index 9223372036854775807 is out of range: 1 exist"),
+        (
+            "f 1/-9223372036854775808 2/1 3/1",
+            "s.obj:5: index -9223372036854775808 is out of range: only 1 so far",
+        ),
+        (
+            "f 1/9223372036854775807 2/1 3/1",
+            "s.obj:5: index 9223372036854775807 is out of range: 1 exist",
+        ),
     ] {
         assert_eq!(Files::new(&format!("{head}{face}\n"), "").refusal(), reason);
     }
@@ -452,13 +508,24 @@ fn numbers_that_are_not_finite_or_absurd_are_refused_with_their_line() {
 fn broken_lines_are_refused_with_their_number() {
     assert_eq!(Files::new("v 0 0 0\nv 1 x 0\n", "").refusal(), "s.obj:2: 'v' needs three numbers");
     assert_eq!(Files::new("v 0 0\n", "").refusal(), "s.obj:1: 'v' needs three numbers");
-    assert!(Files::new("v 0 0 0\nf 1 2 a\n", "").refusal().starts_with("s.obj:2: a face needs corners"));
+    assert!(
+        Files::new("v 0 0 0\nf 1 2 a\n", "").refusal().starts_with("s.obj:2: a face needs corners")
+    );
     assert_eq!(Files::quad("Kd 1 nan 0").refusal(), "s.mtl:2: Kd: 'nan' is not a finite number");
     assert_eq!(Files::quad("Kd 1 0").refusal(), "s.mtl:2: Kd: three numbers are needed");
     assert_eq!(Files::quad("Ns shiny").refusal(), "s.mtl:2: Ns: 'shiny' is not a finite number");
-    assert_eq!(Files::quad("disp -bm x.png y.png").refusal(), "s.mtl:2: option -bm needs 1 number(s)");
-    assert_eq!(Files::new(QUAD, "Kd 1 1 1\n").refusal(), "s.mtl:1: Kd stands before the first newmtl");
-    assert!(has(&Files::quad("Kd 0.5\nmap_Kd").load().warnings, "s.mtl:3: map_Kd names no file or value"));
+    assert_eq!(
+        Files::quad("disp -bm x.png y.png").refusal(),
+        "s.mtl:2: option -bm needs 1 number(s)"
+    );
+    assert_eq!(
+        Files::new(QUAD, "Kd 1 1 1\n").refusal(),
+        "s.mtl:1: Kd stands before the first newmtl"
+    );
+    assert!(has(
+        &Files::quad("Kd 0.5\nmap_Kd").load().warnings,
+        "s.mtl:3: map_Kd names no file or value"
+    ));
 }
 
 #[test]
@@ -510,8 +577,10 @@ fn refusals_keep_their_cause() {
     use std::error::Error as _;
     let missing = load(Path::new("none.obj"), &LoadOptions::default()).expect_err("refused");
     assert_eq!(missing.to_string(), "none.obj: no such file");
-    let cause =
-        missing.source().and_then(|cause| cause.downcast_ref::<std::io::Error>()).expect("an error of the system");
+    let cause = missing
+        .source()
+        .and_then(|cause| cause.downcast_ref::<std::io::Error>())
+        .expect("an error of the system");
     assert_eq!(cause.kind(), std::io::ErrorKind::NotFound);
     let files = Files::quad("map_Kd a.png");
     files.write("a.png", "no picture");
@@ -520,7 +589,10 @@ fn refusals_keep_their_cause() {
     let large = Files::new(&"v 0 0 0\n".repeat(3), "");
     let options = LoadOptions { max_triangles: 2, ..LoadOptions::default() };
     let large = load(&large.path("s.obj"), &options).expect_err("refused");
-    assert!(matches!(large, Error::Limit { line: Some(3), option: "max_triangles", .. }), "{large:?}");
+    assert!(
+        matches!(large, Error::Limit { line: Some(3), option: "max_triangles", .. }),
+        "{large:?}"
+    );
 }
 
 #[test]
@@ -532,7 +604,10 @@ fn textures_outside_the_folder_need_permission() {
     files.image("a.png", one(1, 2, 3));
     let load = |options: &LoadOptions| load(&files.path("scene/s.obj"), options);
     let text = load(&options).expect_err("refused").to_string();
-    assert!(text.contains("s.mtl:2: '../a.png' lies outside") && text.contains("(allow_outside)"), "{text}");
+    assert!(
+        text.contains("s.mtl:2: '../a.png' lies outside") && text.contains("(allow_outside)"),
+        "{text}"
+    );
     options.allow_outside = true;
     assert!(load(&options).expect("loads").scene.materials[0].surface.is_some());
     options.allow_outside = false;
@@ -549,18 +624,25 @@ fn links_out_of_the_folder_devices_and_pipes_are_refused() {
     files.write("scene/s.mtl", "newmtl stone\nmap_Kd link.png\n");
     files.image("a.png", one(1, 2, 3));
     std::os::unix::fs::symlink(files.path("a.png"), files.path("scene/link.png")).expect("linked");
-    let refusal = || load(&files.path("scene/s.obj"), &LoadOptions::default()).expect_err("refused").to_string();
+    let refusal = || {
+        load(&files.path("scene/s.obj"), &LoadOptions::default()).expect_err("refused").to_string()
+    };
     assert!(refusal().contains("lies outside"), "{}", refusal());
     files.write("scene/s.mtl", "newmtl stone\nmap_Kd folder\n");
     fs::create_dir(files.path("scene/folder")).expect("made");
     assert!(refusal().contains("not a regular file"), "{}", refusal());
     files.write("scene/s.obj", QUAD.replace("s.mtl", "/dev/zero"));
     assert!(refusal().contains("/dev/zero"), "{}", refusal());
-    let zero = load(Path::new("/dev/zero"), &LoadOptions::default()).expect_err("refused").to_string();
+    let zero =
+        load(Path::new("/dev/zero"), &LoadOptions::default()).expect_err("refused").to_string();
     assert_eq!(zero, "/dev/zero: not a regular file");
-    let made = std::process::Command::new("mkfifo").arg(files.path("pipe")).status().is_ok_and(|s| s.success());
+    let made = std::process::Command::new("mkfifo")
+        .arg(files.path("pipe"))
+        .status()
+        .is_ok_and(|s| s.success());
     if made {
-        let all = MaterialOptions { albedo: Some(files.path("pipe")), ..MaterialOptions::default() };
+        let all =
+            MaterialOptions { albedo: Some(files.path("pipe")), ..MaterialOptions::default() };
         let options = LoadOptions { all, ..LoadOptions::default() };
         files.write("scene/s.obj", QUAD);
         let text = load(&files.path("scene/s.obj"), &options).expect_err("refused").to_string();
@@ -573,13 +655,22 @@ fn links_out_of_the_folder_devices_and_pipes_are_refused() {
 /// Four materials of different sizes, of which some share images.
 fn four_materials() -> Files {
     let names = ["a", "b", "c", "d"];
-    let faces: String = names.iter().map(|name| format!("usemtl {name}\nf 1/1 2/2 3/3 4/4\n")).collect();
-    let maps = ["map_Kd x.png\ndisp h.png", "map_Kd x.png", "map_Kd y.png\ndisp h.png", "map_Kd -clamp on x.png"];
+    let faces: String =
+        names.iter().map(|name| format!("usemtl {name}\nf 1/1 2/2 3/3 4/4\n")).collect();
+    let maps = [
+        "map_Kd x.png\ndisp h.png",
+        "map_Kd x.png",
+        "map_Kd y.png\ndisp h.png",
+        "map_Kd -clamp on x.png",
+    ];
     let materials = names.iter().zip(maps).map(|(name, maps)| format!("newmtl {name}\n{maps}\n"));
-    let files =
-        Files::new(&format!("{}{faces}", &QUAD[..QUAD.find("usemtl").expect("in it")]), &materials.collect::<String>());
-    let spotted =
-        |side: u32| RgbImage::from_fn(side, side, |x, y| Rgb([(x * 37) as u8, (y * 59) as u8, (x * y) as u8]));
+    let files = Files::new(
+        &format!("{}{faces}", &QUAD[..QUAD.find("usemtl").expect("in it")]),
+        &materials.collect::<String>(),
+    );
+    let spotted = |side: u32| {
+        RgbImage::from_fn(side, side, |x, y| Rgb([(x * 37) as u8, (y * 59) as u8, (x * y) as u8]))
+    };
     files.image("x.png", spotted(48));
     files.image("y.png", spotted(21));
     files.image("h.png", GrayImage::from_fn(64, 32, |x, y| Luma([(x * 31 + y * 17) as u8])));
@@ -592,7 +683,9 @@ fn surfaces_built_in_parallel_are_the_same() {
     let on_threads = |num: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(num).build().expect("threads");
         let materials = pool.install(|| files.load().scene.materials);
-        assert!(materials.len() == 4 && materials.iter().all(|material| material.surface.is_some()));
+        assert!(
+            materials.len() == 4 && materials.iter().all(|material| material.surface.is_some())
+        );
         format!("{materials:?}")
     };
     let alone = on_threads(1);
@@ -610,5 +703,8 @@ fn stages_are_told_in_order() {
     let expected: Vec<_> = [LoadStage::Model].into_iter().chain(images).chain(pyramids).collect();
     assert_eq!(stages.into_inner().expect("whole"), expected);
     let words: Vec<_> = [0, 4, 8].iter().map(|&i| expected[i].to_string()).collect();
-    assert_eq!(words, ["reading the model", "decoding images (3 of 3)", "building pyramids (3 of 4)"]);
+    assert_eq!(
+        words,
+        ["reading the model", "decoding images (3 of 3)", "building pyramids (3 of 4)"]
+    );
 }

@@ -3,7 +3,10 @@
 mod common;
 
 use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Camera, DrawnPixel, Filter, Frame, Horizon, Material, Mesh, Renderer, Scene, Settings, Trilinear};
+use basrelief::{
+    Camera, DrawnPixel, Filter, Frame, Horizon, Material, Mesh, Renderer, Scene, Settings,
+    Trilinear,
+};
 use common::{Random, flat_surface, floor_scene};
 use glam::Vec3;
 use peak_alloc::PeakAlloc;
@@ -14,7 +17,8 @@ static HEAP: PeakAlloc = PeakAlloc;
 /// What does not grow with the scene: buffers of one tile, and of threads.
 const CONSTANT: usize = 4 << 20;
 
-/// Bytes a texel that a surface and its height field take, and that building it takes with its images.
+/// Bytes a texel that a surface and its height field take, and that building it takes with its
+/// images.
 const KEPT: f64 = 24.0;
 const BUILT: f64 = 24.0;
 
@@ -32,11 +36,19 @@ type Linear = [f32; 4];
 /// A grid of `2 * side^2` triangles that fills the frame, all of them seen.
 fn grid(side: u32) -> Scene {
     let num = side + 1;
-    let position = |i: u32| Vec3::new((i % num) as f32 / side as f32 - 0.5, 0.5 - (i / num) as f32 / side as f32, 0.0);
+    let position = |i: u32| {
+        Vec3::new((i % num) as f32 / side as f32 - 0.5, 0.5 - (i / num) as f32 / side as f32, 0.0)
+    };
     let cells = (0..side * num).filter(|i| i % num != side);
-    let triangles = cells.flat_map(|i| [[i, i + num, i + 1], [i + 1, i + num, i + num + 1]]).collect();
+    let triangles =
+        cells.flat_map(|i| [[i, i + num, i + 1], [i + 1, i + num, i + num + 1]]).collect();
     let mesh = Mesh::new((0..num * num).map(position).collect(), vec![], vec![], triangles);
-    let camera = Camera { eye: Vec3::new(0.0, 0.0, 0.5), target: Vec3::ZERO, fov_degrees: 90.0, ..Camera::default() };
+    let camera = Camera {
+        eye: Vec3::new(0.0, 0.0, 0.5),
+        target: Vec3::ZERO,
+        fov_degrees: 90.0,
+        ..Camera::default()
+    };
     Scene { meshes: vec![mesh], materials: vec![Material::default()], camera, ..Scene::default() }
 }
 
@@ -52,7 +64,8 @@ fn frame<P: DrawnPixel>(scene: Scene, settings: Settings) -> usize {
 fn surface(size: u32, relief_depth: f32) -> Surface {
     let mut random = Random(1);
     let albedo = ColorImage::from_fn(size, size, |_, _| [0; 3].map(|_| random.within(0.0, 1.0)));
-    let heights = (relief_depth > 0.0).then(|| HeightImage::from_fn(size, size, |_, _| random.within(0.0, 1.0)));
+    let heights = (relief_depth > 0.0)
+        .then(|| HeightImage::from_fn(size, size, |_, _| random.within(0.0, 1.0)));
     let maps = SurfaceMaps {
         albedo: Some(albedo),
         height: heights,
@@ -78,9 +91,15 @@ fn memory_is_bounded() {
     let floor = || floor_scene(flat_surface(16, 16, Wrap::Repeat, 1), 1.0);
     let settings = Settings { width: 2048, height: 2048, ..settings };
     // The goal is 12 throughout; a pixel in linear light is 16 by itself.
-    for (msaa, is_linear, most) in [(1, false, 12.0), (1, true, 16.1), (4, false, 12.0), (4, true, 12.0)] {
+    for (msaa, is_linear, most) in
+        [(1, false, 12.0), (1, true, 16.1), (4, false, 12.0), (4, true, 12.0)]
+    {
         let settings = Settings { msaa, ..settings.clone() };
-        let bytes = if is_linear { frame::<Linear>(floor(), settings) } else { frame::<[u8; 4]>(floor(), settings) };
+        let bytes = if is_linear {
+            frame::<Linear>(floor(), settings)
+        } else {
+            frame::<[u8; 4]>(floor(), settings)
+        };
         let per_sample = bytes.saturating_sub(CONSTANT) as f64 / f64::from(msaa * 2048 * 2048);
         println!("{per_sample:.1} bytes a pixel and sample, of {msaa}, linear: {is_linear}");
         assert!(per_sample <= most, "{per_sample} bytes a pixel and sample");
@@ -92,11 +111,15 @@ fn memory_is_bounded() {
         let before = HEAP.current_usage();
         let scene = floor_scene(surface, 1.0);
         let filter = Filter::Horizon(Horizon { far_field: false, ..Horizon::default() });
-        let renderer = Renderer::new(scene, Settings { filter, ..Settings::default() }).expect("a valid scene");
+        let renderer = Renderer::new(scene, Settings { filter, ..Settings::default() })
+            .expect("a valid scene");
         let tables = HEAP.current_usage() - before;
         drop(renderer);
-        let [most, kept, tables] = [most, kept, tables].map(|bytes| bytes as f64 / f64::from(1024 * 1024));
-        println!("{name}: {kept:.1} bytes a texel, and {tables:.1} of tables; {most:.1} while it is built");
+        let [most, kept, tables] =
+            [most, kept, tables].map(|bytes| bytes as f64 / f64::from(1024 * 1024));
+        println!(
+            "{name}: {kept:.1} bytes a texel, and {tables:.1} of tables; {most:.1} while it is built"
+        );
         assert!(kept + tables <= KEPT, "{name}: {} bytes a texel", kept + tables);
         assert!(most <= BUILT, "{name}: {most} bytes a texel while it is built");
     }

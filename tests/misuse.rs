@@ -2,8 +2,8 @@
 
 use basrelief::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps, Wrap};
 use basrelief::{
-    Camera, Derivatives, Error, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material, Mesh, Rays, Region,
-    Renderer, Scene, Settings, Trilinear, Visibility, Visible, metrics,
+    Camera, Derivatives, Error, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material,
+    Mesh, Rays, Region, Renderer, Scene, Settings, Trilinear, Visibility, Visible, metrics,
 };
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
@@ -28,12 +28,28 @@ const _: () = {
 };
 
 fn cases(num: u32) -> ProptestConfig {
-    ProptestConfig { cases: num, rng_seed: RngSeed::Fixed(2017), failure_persistence: None, ..Default::default() }
+    ProptestConfig {
+        cases: num,
+        rng_seed: RngSeed::Fixed(2017),
+        failure_persistence: None,
+        ..Default::default()
+    }
 }
 
 /// Mostly a tame number, at times any.
 fn number() -> impl Strategy<Value = f32> {
-    let strange = vec![0.0, -0.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e-45, 1e18, 1e30];
+    let strange = vec![
+        0.0,
+        -0.0,
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::MAX,
+        f32::MIN,
+        1e-45,
+        1e18,
+        1e30,
+    ];
     prop_oneof![12 => -2.0_f32..2.0, 1 => prop::sample::select(strange), 1 => any::<f32>()]
 }
 
@@ -67,9 +83,15 @@ fn filter() -> impl Strategy<Value = Filter> {
         )| match filter {
             Filter::Nearest | Filter::Bilinear => filter,
             Filter::Trilinear(_) => Filter::Trilinear(Trilinear { derivatives, formulas }),
-            Filter::Ewa(_) => {
-                Filter::Ewa(Ewa { derivatives, formulas, texel_budget, max_anisotropy, every_texel, cut, texel_kernel })
-            }
+            Filter::Ewa(_) => Filter::Ewa(Ewa {
+                derivatives,
+                formulas,
+                texel_budget,
+                max_anisotropy,
+                every_texel,
+                cut,
+                texel_kernel,
+            }),
             Filter::Visible(_) => Filter::Visible(Visible {
                 visibility,
                 derivatives,
@@ -78,7 +100,9 @@ fn filter() -> impl Strategy<Value = Filter> {
                 max_anisotropy,
                 max_stretch,
             }),
-            Filter::Horizon(_) => Filter::Horizon(Horizon { lines, far_field, far_field_mib, max_anisotropy }),
+            Filter::Horizon(_) => {
+                Filter::Horizon(Horizon { lines, far_field, far_field_mib, max_anisotropy })
+            }
             Filter::Parallax(_) => Filter::Parallax(Rays { samples }),
             Filter::Truth(_) => Filter::Truth(Rays { samples }),
         },
@@ -89,10 +113,19 @@ fn settings() -> impl Strategy<Value = Settings> {
     // Huge frames are valid; what is drawn here is small or not valid at all.
     let side = || prop_oneof![15 => 1_u32..20, 1 => Just(0), 1 => 32769..=u32::MAX];
     let region = prop_oneof![3 => Just(None), 1 => [side(), side(), side(), side()].prop_map(Some)];
-    let grids = (pick(&[1, 1, 4, 8, 0, 2, u32::MAX]), pick(&[8, 16, 32, 64, 256, 32, 8, 0, 7, 512, u32::MAX]));
+    let grids = (
+        pick(&[1, 1, 4, 8, 0, 2, u32::MAX]),
+        pick(&[8, 16, 32, 64, 256, 32, 8, 0, 7, 512, u32::MAX]),
+    );
     let modes = (filter(), pick(&[Lighting::Unlit, Lighting::Lit]), any::<[bool; 2]>());
     (side(), side(), region, modes, grids).prop_map(
-        |(width, height, region, (filter, lighting, [parallax, cull_back_faces]), (msaa, tile_size))| Settings {
+        |(
+            width,
+            height,
+            region,
+            (filter, lighting, [parallax, cull_back_faces]),
+            (msaa, tile_size),
+        )| Settings {
             width,
             height,
             region: region.map(|[x, y, width, height]| Region { x, y, width, height }),
@@ -110,16 +143,32 @@ fn settings() -> impl Strategy<Value = Settings> {
 fn maps() -> impl Strategy<Value = SurfaceMaps> {
     let size = || prop_oneof![12 => (1_u32..9, 1_u32..9, Just(0_usize)), 1 => (0_u32..3, any::<u32>(), 0..3_usize)];
     let wrap = pick(&[Wrap::Repeat, Wrap::Mirror, Wrap::Clamp]);
-    let scalars = (prop_oneof![4 => 0.0_f32..1.0, 1 => number()], prop_oneof![4 => Just(1.0_f32), 1 => number()]);
+    let scalars = (
+        prop_oneof![4 => 0.0_f32..1.0, 1 => number()],
+        prop_oneof![4 => Just(1.0_f32), 1 => number()],
+    );
     (size(), size(), size(), wrap, scalars, any::<[bool; 4]>(), any::<u16>()).prop_map(
         |(a, b, c, wrap, (relief_depth, scale), [has_a, has_b, has_c, keep_normals], seed)| {
-            let num = |(w, h, missing): (u32, u32, usize)| (w as usize).saturating_mul(h as usize).min(99) + missing;
+            let num = |(w, h, missing): (u32, u32, usize)| {
+                (w as usize).saturating_mul(h as usize).min(99) + missing
+            };
             let value = |i: usize| (i as u16).wrapping_mul(seed);
-            let albedo =
-                || ColorImage { width: a.0, height: a.1, texels: (0..num(a)).map(|i| [value(i); 3]).collect(), scale };
-            let height = || HeightImage { width: b.0, height: b.1, texels: (0..num(b)).map(value).collect() };
-            let normal =
-                || NormalImage { width: c.0, height: c.1, texels: (0..num(c)).map(|i| [value(i) as i16; 3]).collect() };
+            let albedo = || ColorImage {
+                width: a.0,
+                height: a.1,
+                texels: (0..num(a)).map(|i| [value(i); 3]).collect(),
+                scale,
+            };
+            let height = || HeightImage {
+                width: b.0,
+                height: b.1,
+                texels: (0..num(b)).map(value).collect(),
+            };
+            let normal = || NormalImage {
+                width: c.0,
+                height: c.1,
+                texels: (0..num(c)).map(|i| [value(i) as i16; 3]).collect(),
+            };
             SurfaceMaps {
                 albedo: has_a.then(albedo),
                 height: has_b.then(height),
@@ -134,53 +183,79 @@ fn maps() -> impl Strategy<Value = SurfaceMaps> {
 
 fn mesh() -> impl Strategy<Value = Mesh> {
     let index = || prop_oneof![30 => 0_u32..6, 1 => any::<u32>()];
-    let corners = (prop::collection::vec(vector(), 6), prop::collection::vec((number(), number()), 0..8));
+    let corners =
+        (prop::collection::vec(vector(), 6), prop::collection::vec((number(), number()), 0..8));
     let triangles = prop::collection::vec(prop::array::uniform3(index()), 0..6);
-    (corners, triangles, any::<[u8; 2]>(), vector()).prop_map(|((positions, uv), triangles, [change, material], v)| {
-        let mut tex_coords: Vec<_> = uv.into_iter().map(Vec2::from).collect();
-        if change % 4 > 0 {
-            tex_coords.resize(6, v.truncate());
-        }
-        let mut mesh = Mesh::new(positions, tex_coords, vec![], triangles);
-        mesh.material = usize::from(material % 8 / 7);
-        match change {
-            200 => mesh.normals.clear(),
-            201 => mesh.normals[0] = v,
-            202 => mesh.tangents.clear(),
-            203 if !mesh.tangents.is_empty() => mesh.tangents[0][1] = v,
-            204 => drop(mesh.positions.pop()),
-            _ => {}
-        }
-        mesh
-    })
+    (corners, triangles, any::<[u8; 2]>(), vector()).prop_map(
+        |((positions, uv), triangles, [change, material], v)| {
+            let mut tex_coords: Vec<_> = uv.into_iter().map(Vec2::from).collect();
+            if change % 4 > 0 {
+                tex_coords.resize(6, v.truncate());
+            }
+            let mut mesh = Mesh::new(positions, tex_coords, vec![], triangles);
+            mesh.material = usize::from(material % 8 / 7);
+            match change {
+                200 => mesh.normals.clear(),
+                201 => mesh.normals[0] = v,
+                202 => mesh.tangents.clear(),
+                203 if !mesh.tangents.is_empty() => mesh.tangents[0][1] = v,
+                204 => drop(mesh.positions.pop()),
+                _ => {}
+            }
+            mesh
+        },
+    )
 }
 
 fn scene() -> impl Strategy<Value = Scene> {
-    let light = (any::<bool>(), vector(), vector()).prop_map(|(is_point, place, intensity)| match is_point {
-        true => Light::Point { position: place, intensity: intensity.abs() },
-        false => Light::Directional { to_light: place, intensity: intensity.abs() },
-    });
-    let material = (maps(), vector(), vector(), number()).prop_map(|(maps, diffuse, specular, shininess)| Material {
-        surface: Surface::new(maps).ok().map(Arc::new),
-        diffuse: diffuse.abs(),
-        specular: specular.abs(),
-        shininess: shininess.abs(),
-        ..Material::default()
-    });
+    let light =
+        (any::<bool>(), vector(), vector()).prop_map(
+            |(is_point, place, intensity)| match is_point {
+                true => Light::Point { position: place, intensity: intensity.abs() },
+                false => Light::Directional { to_light: place, intensity: intensity.abs() },
+            },
+        );
+    let material =
+        (maps(), vector(), vector(), number()).prop_map(|(maps, diffuse, specular, shininess)| {
+            Material {
+                surface: Surface::new(maps).ok().map(Arc::new),
+                diffuse: diffuse.abs(),
+                specular: specular.abs(),
+                shininess: shininess.abs(),
+                ..Material::default()
+            }
+        });
     let positive = |most: f32| prop_oneof![8 => 1e-3..most, 1 => number()];
-    let camera = (vector(), vector(), prop_oneof![4 => Just(Vec3::Y), 1 => vector()], positive(170.0), positive(1.0))
-        .prop_map(|(eye, target, up, fov_degrees, near)| Camera { eye, target, up, fov_degrees, near });
+    let camera = (
+        vector(),
+        vector(),
+        prop_oneof![4 => Just(Vec3::Y), 1 => vector()],
+        positive(170.0),
+        positive(1.0),
+    )
+        .prop_map(|(eye, target, up, fov_degrees, near)| Camera {
+            eye,
+            target,
+            up,
+            fov_degrees,
+            near,
+        });
     let colors = (vector(), prop_oneof![5 => Just([0.5; 4]), 1 => prop::array::uniform4(number())]);
-    (prop::collection::vec(mesh(), 0..3), material, camera, prop::collection::vec(light, 0..3), colors).prop_map(
-        |(meshes, material, camera, lights, (ambient, background))| Scene {
+    (
+        prop::collection::vec(mesh(), 0..3),
+        material,
+        camera,
+        prop::collection::vec(light, 0..3),
+        colors,
+    )
+        .prop_map(|(meshes, material, camera, lights, (ambient, background))| Scene {
             meshes,
             materials: vec![material],
             camera,
             lights,
             ambient: ambient.abs(),
             background,
-        },
-    )
+        })
 }
 
 proptest! {
@@ -241,7 +316,8 @@ fn many_renders_run_in_one_process_at_once() {
         let tex_coords = corners.map(|(x, z)| Vec2::new(x, -z)).to_vec();
         let mesh = Mesh::new(positions, tex_coords, vec![], vec![[0, 1, 2], [0, 2, 3]]);
         let materials = vec![Material { surface: Some(surface), ..Material::default() }];
-        basrelief::render(Scene { meshes: vec![mesh], materials, ..Scene::default() }, settings).expect("a frame")
+        basrelief::render(Scene { meshes: vec![mesh], materials, ..Scene::default() }, settings)
+            .expect("a frame")
     };
     let few_rays = |filter| match filter {
         Filter::Parallax(_) => Filter::Parallax(Rays { samples: 2 }),

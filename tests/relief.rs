@@ -10,7 +10,9 @@ use common::{Random, rough_surface};
 /// The depth of the first crossing, by steps of a hundredth of a texel and halving.
 fn dense_march(field: &HeightField, base: [f32; 2], reach: [f32; 2]) -> f64 {
     let texels = field.texels_per_repeat;
-    let place = |t: f64| [0, 1].map(|i| (f64::from(base[i]) + f64::from(reach[i]) * t) * f64::from(texels[i]));
+    let place = |t: f64| {
+        [0, 1].map(|i| (f64::from(base[i]) + f64::from(reach[i]) * t) * f64::from(texels[i]))
+    };
     let above = |t: f64| {
         let [u, v] = place(t);
         1.0 - t > field.height_at(u, v)
@@ -37,20 +39,28 @@ fn check(surface: &Surface, seed: u64, longest: f32) {
     let mut num_grazing = 0;
     for _ in 0..200 {
         let mut lanes = || PixelLanes::new([0.0; 8].map(|_| random.within(-1.0, 1.0)));
-        let (base, reach) = ([lanes() * 3.0, lanes() * 3.0], [lanes() * longest, lanes() * longest]);
+        let (base, reach) =
+            ([lanes() * 3.0, lanes() * 3.0], [lanes() * longest, lanes() * longest]);
         let depth = march(&field, &base, &reach).to_array();
         for (lane, &found) in depth.iter().enumerate() {
             let [b, r] = [base, reach].map(|v| v.map(|lanes| lanes.to_array()[lane]));
             let expected = dense_march(&field, b, r);
-            let texels = (0..2).map(|i| (r[i] * field.texels_per_repeat[i]).abs()).fold(0.0, f32::max);
+            let texels =
+                (0..2).map(|i| (r[i] * field.texels_per_repeat[i]).abs()).fold(0.0, f32::max);
             let found = f64::from(found);
             let error = (found - expected).abs() * f64::from(texels);
-            // Where the ray grazes the relief, rounding decides whether it is hit there or further on.
-            let [u, v] =
-                [0, 1].map(|i| (f64::from(b[i]) + f64::from(r[i]) * found) * f64::from(field.texels_per_repeat[i]));
+            // Where the ray grazes the relief, rounding decides whether it is hit there or further
+            // on.
+            let [u, v] = [0, 1].map(|i| {
+                (f64::from(b[i]) + f64::from(r[i]) * found) * f64::from(field.texels_per_repeat[i])
+            });
             let grazes = found < expected && (1.0 - found - field.height_at(u, v)).abs() < 1e-4;
             num_grazing += usize::from(error >= 0.05 && grazes);
-            assert!(error < 0.05 || grazes, "{error} texels off: {} for {expected}, from {b:?} by {r:?}", found);
+            assert!(
+                error < 0.05 || grazes,
+                "{error} texels off: {} for {expected}, from {b:?} by {r:?}",
+                found
+            );
         }
     }
     assert!(num_grazing < 5, "{num_grazing} of 1600 rays");
@@ -71,8 +81,10 @@ fn hits_are_exact_beyond_the_edges_of_clamped_and_mirrored_maps() {
 
 #[test]
 fn a_needle_of_one_texel_is_not_stepped_over() {
-    let heights = HeightImage::from_fn(256, 256, |x, y| if (x, y) == (200, 77) { 1.0 } else { 0.0 });
-    let surface = Surface::new(SurfaceMaps { height: Some(heights), ..Default::default() }).expect("valid maps");
+    let heights =
+        HeightImage::from_fn(256, 256, |x, y| if (x, y) == (200, 77) { 1.0 } else { 0.0 });
+    let surface = Surface::new(SurfaceMaps { height: Some(heights), ..Default::default() })
+        .expect("valid maps");
     let field = HeightField::new(&surface);
     // Along the needle's row, grazing its tip.
     let lanes = PixelLanes::splat;
@@ -85,7 +97,16 @@ fn a_needle_of_one_texel_is_not_stepped_over() {
 #[test]
 fn flat_and_degenerate_rays_end() {
     let field = HeightField::new(&rough_surface(8, 8, Wrap::Repeat, 1));
-    let strange = PixelLanes::new([0.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, 1e-30, 64.0]);
+    let strange = PixelLanes::new([
+        0.0,
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        1e30,
+        -1e30,
+        1e-30,
+        64.0,
+    ]);
     for base in [PixelLanes::ZERO, strange] {
         let depth = march(&field, &[base; 2], &[strange, PixelLanes::ONE]).to_array();
         assert!(depth.iter().all(|t| (0.0..=1.0).contains(t)), "{depth:?}");

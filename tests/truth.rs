@@ -1,5 +1,5 @@
-//! Quality bars: each filter against supersampled truth on a small procedural floor. The goals are those on a large floor at
-//! 640 x 360; here stands what this small one reaches.
+//! Quality bars: each filter against supersampled truth on a small procedural floor. The goals are
+//! those on a large floor at 640 x 360; here stands what this small one reaches.
 
 mod common;
 
@@ -11,7 +11,8 @@ use basrelief::raster::{AttributePlanes, QuadPair};
 use basrelief::relief::HeightField;
 use basrelief::texture::{Surface, SurfaceMaps, srgb_from_linear};
 use basrelief::{
-    Camera, Derivatives, Ewa, Filter, Frame, Horizon, Rays, Renderer, Scene, Settings, Visibility, Visible,
+    Camera, Derivatives, Ewa, Filter, Frame, Horizon, Rays, Renderer, Scene, Settings, Visibility,
+    Visible,
 };
 use common::{cobbles, floor_scene};
 use std::sync::OnceLock;
@@ -45,7 +46,10 @@ fn parallax(samples: u32) -> Filter {
 
 /// Seen so low, and with relief so deep, that much of every footprint is hidden.
 fn floor() -> Scene {
-    floor_scene(Surface::new(SurfaceMaps { relief_depth: 0.1, ..cobbles(128, 4) }).expect("valid maps"), 0.5)
+    floor_scene(
+        Surface::new(SurfaceMaps { relief_depth: 0.1, ..cobbles(128, 4) }).expect("valid maps"),
+        0.5,
+    )
 }
 
 fn draw(settings: Settings) -> Frame {
@@ -56,7 +60,9 @@ fn draw(settings: Settings) -> Frame {
 fn psnr(settings: Settings) -> f64 {
     static TRUTH: OnceLock<Frame> = OnceLock::new();
     let truth = TRUTH.get_or_init(|| draw(self::settings(truth(256))));
-    let psnr = compare(&(&draw(settings.clone())).into(), &truth.into()).expect("frames of one size").psnr_db;
+    let psnr = compare(&(&draw(settings.clone())).into(), &truth.into())
+        .expect("frames of one size")
+        .psnr_db;
     println!("{:?}: {psnr:.2} dB", settings.filter);
     psnr
 }
@@ -120,7 +126,10 @@ fn sets_of_texels_are_the_papers_on_every_footprint_of_a_frame() {
     let surface = scene.materials[0].surface.as_deref().expect("a relief floor");
     let field = HeightField::new(surface);
     let geometry = project(&scene, &settings);
-    let planes: Vec<_> = geometry.triangles().map(|t| AttributePlanes::new(&geometry, t, &scene, &settings)).collect();
+    let planes: Vec<_> = geometry
+        .triangles()
+        .map(|t| AttributePlanes::new(&geometry, t, &scene, &settings))
+        .collect();
     let mut num = 0;
     for quad in 0..24 * 13 {
         let origin = [[quad % 24 * 2, quad / 24 * 2]; 2];
@@ -136,20 +145,27 @@ fn sets_of_texels_are_the_papers_on_every_footprint_of_a_frame() {
     assert!(num > 1000, "{num} footprints");
 }
 
-/// Mean square of how much the error (image less truth) of a filter changes from frame to frame of a slow walk.
+/// Mean square of how much the error (image less truth) of a filter changes from frame to frame of
+/// a slow walk.
 fn unrest(settings: &Settings, truths: &[Frame]) -> f64 {
     let mut renderer = Renderer::new(floor(), settings.clone()).expect("a valid scene");
     let errors: Vec<Vec<f32>> = walk(&mut renderer, truths.len())
         .zip(truths)
         .map(|(frame, truth)| {
-            let channels =
-                |frame: &Frame| frame.pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect::<Vec<_>>();
+            let channels = |frame: &Frame| {
+                frame.pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect::<Vec<_>>()
+            };
             let encoded = |c: f32| srgb_from_linear(c.clamp(0.0, 1.0));
-            channels(&frame).into_iter().zip(channels(truth)).map(|(a, b)| encoded(a) - encoded(b)).collect()
+            channels(&frame)
+                .into_iter()
+                .zip(channels(truth))
+                .map(|(a, b)| encoded(a) - encoded(b))
+                .collect()
         })
         .collect();
-    let squares =
-        errors.windows(2).flat_map(|pair| pair[0].iter().zip(&pair[1]).map(|(a, b)| f64::from(a - b).powi(2)));
+    let squares = errors
+        .windows(2)
+        .flat_map(|pair| pair[0].iter().zip(&pair[1]).map(|(a, b)| f64::from(a - b).powi(2)));
     squares.sum::<f64>() / ((errors.len() - 1) * errors[0].len()) as f64
 }
 
@@ -157,7 +173,9 @@ fn unrest(settings: &Settings, truths: &[Frame]) -> f64 {
 fn walk(renderer: &mut Renderer, num: usize) -> impl Iterator<Item = Frame> {
     let camera = renderer.scene().camera;
     (0..num).map(move |i| {
-        let step = glam::Vec3::new(camera.target.x - camera.eye.x, 0.0, camera.target.z - camera.eye.z).normalize();
+        let step =
+            glam::Vec3::new(camera.target.x - camera.eye.x, 0.0, camera.target.z - camera.eye.z)
+                .normalize();
         let moved = step * (0.01 * i as f32);
         renderer
             .set_camera(Camera { eye: camera.eye + moved, target: camera.target + moved, ..camera })
@@ -174,17 +192,22 @@ fn horizon_is_steady_in_motion() {
     let horizon = unrest(&small(Filter::default()), &truths);
     let parallax = unrest(&small(parallax(4)), &truths);
     // A twentieth, over 60 frames too.
-    println!("mean square of the error's change: horizon {horizon:e}, parallax with 4 rays {parallax:e}");
+    println!(
+        "mean square of the error's change: horizon {horizon:e}, parallax with 4 rays {parallax:e}"
+    );
     assert!(horizon < 0.1 * parallax, "{horizon:e} against {parallax:e}");
 }
 
-/// Where the floor goes from one mip level to the next, the mean error of a row does not jump by a step of 8-bit colour.
+/// Where the floor goes from one mip level to the next, the mean error of a row does not jump by a
+/// step of 8-bit colour.
 #[test]
 fn changes_of_level_are_not_seen() {
     let size = |filter| Settings { width: 320, height: 180, ..settings(filter) };
     let row_means = |filter| {
         let frame = draw(size(filter));
-        let srgb = |pixel: &[f32; 4]| pixel[..3].iter().map(|c| f64::from(srgb_from_linear(*c))).sum::<f64>() / 3.0;
+        let srgb = |pixel: &[f32; 4]| {
+            pixel[..3].iter().map(|c| f64::from(srgb_from_linear(*c))).sum::<f64>() / 3.0
+        };
         let rows = frame.pixels.chunks(frame.width as usize);
         rows.map(|row| row.iter().map(srgb).sum::<f64>() / row.len() as f64).collect::<Vec<_>>()
     };
@@ -202,7 +225,9 @@ fn no_pixel_of_the_far_field_is_black() {
     let scene = basrelief::scene::builtin();
     let mut renderer = Renderer::new(scene, settings).expect("a valid scene");
     let camera = renderer.scene().camera;
-    renderer.set_camera(Camera { fov_degrees: camera.fov_degrees * 0.1, ..camera }).expect("a camera");
+    renderer
+        .set_camera(Camera { fov_degrees: camera.fov_degrees * 0.1, ..camera })
+        .expect("a camera");
     let frame = renderer.render();
     assert!(frame.pixels.iter().all(|[r, g, b, _]| r + g + b > 0.01));
 }

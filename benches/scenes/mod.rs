@@ -15,10 +15,15 @@ pub(crate) fn terrain(side: u32) -> Scene {
         Vec3::new(at.x * 20.0 - 10.0, height, at.y * 20.0 - 10.0)
     };
     let cells = (0..side * num).filter(|i| i % num != side);
-    let triangles = cells.flat_map(|i| [[i, i + num, i + 1], [i + 1, i + num, i + num + 1]]).collect();
+    let triangles =
+        cells.flat_map(|i| [[i, i + num, i + 1], [i + 1, i + num, i + num + 1]]).collect();
     let positions = (0..num * num).map(|i| position(corner(i))).collect();
     let tex_coords = (0..num * num).map(|i| corner(i) * 20.0).collect();
-    let camera = Camera { eye: Vec3::new(0.0, 5.5, 11.0), target: Vec3::new(0.0, -0.6, 0.5), ..Camera::default() };
+    let camera = Camera {
+        eye: Vec3::new(0.0, 5.5, 11.0),
+        target: Vec3::new(0.0, -0.6, 0.5),
+        ..Camera::default()
+    };
     scene(Mesh::new(positions, tex_coords, vec![], triangles), camera)
 }
 
@@ -27,7 +32,11 @@ pub(crate) fn floor() -> Scene {
     let at = [(-32.0, 32.0), (32.0, 32.0), (32.0, -32.0), (-32.0, -32.0)];
     let positions = at.map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec();
     let tex_coords = at.map(|(x, z)| Vec2::new(x, -z)).to_vec();
-    let camera = Camera { eye: Vec3::new(0.0, 1.6, 6.0), target: Vec3::new(0.0, 0.6, 0.0), ..Camera::default() };
+    let camera = Camera {
+        eye: Vec3::new(0.0, 1.6, 6.0),
+        target: Vec3::new(0.0, 0.6, 0.0),
+        ..Camera::default()
+    };
     scene(Mesh::new(positions, tex_coords, vec![], vec![[0, 1, 2], [0, 2, 3]]), camera)
 }
 
@@ -38,16 +47,23 @@ fn scene(mesh: Mesh, camera: Camera) -> Scene {
 /// A surface of `size` texels a side with stones of 64 texels, or bare of relief.
 pub(crate) fn stones(size: u32, seed: u32, relief_depth: f32) -> Arc<Surface> {
     let noise = move |x: u32, y: u32| {
-        let hash = (x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ seed).wrapping_mul(0xc2b2_ae3d);
+        let hash = (x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ seed)
+            .wrapping_mul(0xc2b2_ae3d);
         ((hash ^ hash >> 15) & 0xffff) as f32 / 65535.0
     };
     let height = |x: u32, y: u32| {
         let [u, v] = [x, y].map(|c| ((c % 64) as f32 + 0.5) / 32.0 - 1.0);
         (1.0 - u.powi(6)) * (1.0 - v.powi(6))
     };
-    let albedo = ColorImage::from_fn(size, size, |x, y| [0.3, 0.25, 0.2].map(|c| c + 0.5 * noise(x, y)));
+    let albedo =
+        ColorImage::from_fn(size, size, |x, y| [0.3, 0.25, 0.2].map(|c| c + 0.5 * noise(x, y)));
     let heights = (relief_depth > 0.0).then(|| HeightImage::from_fn(size, size, height));
-    let maps = SurfaceMaps { albedo: Some(albedo), height: heights, relief_depth, ..SurfaceMaps::default() };
+    let maps = SurfaceMaps {
+        albedo: Some(albedo),
+        height: heights,
+        relief_depth,
+        ..SurfaceMaps::default()
+    };
     Arc::new(Surface::new(maps).expect("valid maps"))
 }
 
@@ -64,7 +80,8 @@ pub(crate) fn textured(mut scene: Scene, surface: Arc<Surface>, repeats: f32) ->
     scene
 }
 
-/// The terrain of `2 * side^2` triangles cut into `tiles^2` objects with a material each, which share the surfaces in turn.
+/// The terrain of `2 * side^2` triangles cut into `tiles^2` objects with a material each, which
+/// share the surfaces in turn.
 pub(crate) fn objects(side: u32, tiles: u32, surfaces: &[Arc<Surface>]) -> Scene {
     let whole = terrain(side);
     let mesh = &whole.meshes[0];
@@ -95,6 +112,7 @@ pub(crate) fn objects(side: u32, tiles: u32, surfaces: &[Arc<Surface>]) -> Scene
     });
     let meshes = cut.collect();
     let surface = |i: usize| Some(surfaces[i % surfaces.len()].clone());
-    let materials = (0..num).map(|i| Material { surface: surface(i), ..Material::default() }).collect();
+    let materials =
+        (0..num).map(|i| Material { surface: surface(i), ..Material::default() }).collect();
     Scene { meshes, materials, camera: whole.camera, ..Scene::default() }
 }

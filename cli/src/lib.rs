@@ -18,7 +18,8 @@ pub use options::args::{Cli, Ending};
 pub use refusal::Refusal;
 use std::process::ExitCode;
 
-/// Crates that read files. The library contains their panics and refuses the file, which says enough.
+/// Crates that read files. The library contains their panics and refuses the file, which says
+/// enough.
 const READERS: [&str; 6] = ["exr-", "image-", "png-", "tiff-", "tobj-", "zune-"];
 
 /// Keeps quiet about panics in [`READERS`]; all others are reported as before.
@@ -32,7 +33,8 @@ fn silence_readers() {
     }));
 }
 
-/// Runs the subcommand that the command line names, and says on stderr why it ends early if it does.
+/// Runs the subcommand that the command line names, and says on stderr why it ends early if it
+/// does.
 pub fn run() -> ExitCode {
     silence_readers();
     let cli = match Cli::read(std::env::args_os()) {

@@ -9,7 +9,8 @@ use std::sync::{Mutex, PoisonError};
 /// The temporary file of what is being written. Held while such a file is made or gets its name.
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-/// On an interrupt, removes the file that is being written, so that nothing half-written stays behind, and ends the program.
+/// On an interrupt, removes the file that is being written, so that nothing half-written stays
+/// behind, and ends the program.
 pub(crate) fn clean_up_on_interrupt() {
     let end = || {
         let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -49,11 +50,16 @@ pub(crate) fn check(path: &Path) -> Result<(), Refusal> {
 /// Writes a whole file, or stdout.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Refusal> {
     let name = if is_stdout(path) { "stdout".into() } else { path.display().to_string() };
-    write_by(path, |sink| sink.write_all(bytes).map_err(|e| format!("{name}: cannot be written: {e}").into()))
+    write_by(path, |sink| {
+        sink.write_all(bytes).map_err(|e| format!("{name}: cannot be written: {e}").into())
+    })
 }
 
 /// Writes a whole file, or stdout, as `write` does to its sink.
-pub(crate) fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<(), Refusal>) -> Result<(), Refusal> {
+pub(crate) fn write_by(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> Result<(), Refusal>,
+) -> Result<(), Refusal> {
     if is_stdout(path) {
         let mut stdout = io::stdout().lock();
         write(&mut stdout)?;
@@ -74,7 +80,9 @@ pub(crate) fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result
 pub(crate) fn print(text: &[u8]) -> Result<(), Refusal> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text).and_then(|()| stdout.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("stdout: cannot be written: {e}").into()),
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(format!("stdout: cannot be written: {e}").into())
+        }
         _ => Ok(()),
     }
 }

@@ -7,7 +7,8 @@ use std::path::Path;
 use crate::options::choices::word;
 use crate::refusal::Refusal;
 
-/// One JSON object; of several pictures in a row where `--json` prints one a line. Times are in milliseconds; those of a frame belong to the frame of the middle time.
+/// One JSON object; of several pictures in a row where `--json` prints one a line. Times are in
+/// milliseconds; those of a frame belong to the frame of the middle time.
 #[derive(Serialize)]
 pub(crate) struct Report {
     frame_ms: f64,
@@ -54,8 +55,14 @@ pub(crate) fn add(sum: &mut Stats, part: &Stats) {
 }
 
 impl Report {
-    /// The figures of the frame of the middle time (of an even number, the faster of the middle two).
-    pub(crate) fn new(mut frames: Vec<(f64, Stats)>, load_ms: f64, threads: usize, settings: &Settings) -> Self {
+    /// The figures of the frame of the middle time (of an even number, the faster of the middle
+    /// two).
+    pub(crate) fn new(
+        mut frames: Vec<(f64, Stats)>,
+        load_ms: f64,
+        threads: usize,
+        settings: &Settings,
+    ) -> Self {
         frames.sort_by(|a, b| a.0.total_cmp(&b.0));
         let middle = frames.len().saturating_sub(1) / 2;
         let (frame_ms, stats) = frames.into_iter().nth(middle).unwrap_or_default();
@@ -94,7 +101,9 @@ impl Report {
     pub(crate) fn line(&self) -> String {
         let Self { width, height, filter, frame_ms, load_ms, threads, .. } = self;
         let threads = if *threads == 1 { "1 thread".into() } else { format!("{threads} threads") };
-        format!("{width}x{height}, filter {filter}: {frame_ms:.1} ms on {threads}, after {load_ms:.0} ms of loading")
+        format!(
+            "{width}x{height}, filter {filter}: {frame_ms:.1} ms on {threads}, after {load_ms:.0} ms of loading"
+        )
     }
 
     /// The object, on one line.
@@ -112,7 +121,9 @@ mod tests {
     #[test]
     fn middle_frame_is_reported() {
         let frame = |ms: f64| (ms, Stats { shade_ms: ms / 2.0, ..Stats::default() });
-        for (times, expected) in [(&[3.0, 1.0, 2.0][..], 2.0), (&[4.0, 3.0, 1.0, 2.0], 2.0), (&[5.0], 5.0)] {
+        for (times, expected) in
+            [(&[3.0, 1.0, 2.0][..], 2.0), (&[4.0, 3.0, 1.0, 2.0], 2.0), (&[5.0], 5.0)]
+        {
             let frames = times.iter().map(|&ms| frame(ms)).collect();
             let report = Report::new(frames, 1.0, 2, &Settings::default());
             assert_eq!((report.frame_ms, report.shade_ms), (expected, expected / 2.0));

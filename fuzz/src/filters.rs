@@ -3,9 +3,9 @@
 use crate::input::Input;
 use crate::{check, hold};
 use basrelief::invariants::{
-    anisotropy_limit_only_limits, ellipse_is_bounded, flat_relief_hides_nothing, horizon_weights, linear_in_texture,
-    march_finds_first_hit, mirrored, records_are_visible, same_for_same_ellipse, same_when_scaled, shifted, turned,
-    within_texels, work_is_bounded,
+    anisotropy_limit_only_limits, ellipse_is_bounded, flat_relief_hides_nothing, horizon_weights,
+    linear_in_texture, march_finds_first_hit, mirrored, records_are_visible, same_for_same_ellipse,
+    same_when_scaled, shifted, turned, within_texels, work_is_bounded,
 };
 use basrelief::{Ewa, Filter, Horizon, invariants};
 
@@ -14,7 +14,9 @@ pub fn footprint_ellipse(bytes: &[u8]) {
     check(bytes, |input: Input| {
         let (surface, pixel, limit) = (input.surface(), input.pixel(), input.max_anisotropy());
         hold(ellipse_is_bounded(&pixel, surface.base().texels_per_repeat(), limit));
-        hold(anisotropy_limit_only_limits(&surface, &pixel, limit, |limit| input.filter_limited(limit)));
+        hold(anisotropy_limit_only_limits(&surface, &pixel, limit, |limit| {
+            input.filter_limited(limit)
+        }));
         hold(within_texels(&surface, &pixel, &input.filter()));
     });
 }

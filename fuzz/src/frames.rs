@@ -15,7 +15,9 @@ pub fn coverage(bytes: &[u8]) {
     type Fan = ([i16; 2], [(u8, u8); 8], [i8; 2], u8);
     check(bytes, |(center, ring, tilt, msaa): Fan| {
         // From 4 to four million pixels.
-        let radius = |(size, digits): (u8, u8)| (1.0 + f32::from(digits) / 256.0) * (4_u32 << (size % 20)) as f32;
+        let radius = |(size, digits): (u8, u8)| {
+            (1.0 + f32::from(digits) / 256.0) * (4_u32 << (size % 20)) as f32
+        };
         let center = center.map(|c| f32::from(c) / 1024.0);
         let tilt = tilt.map(|t| f32::from(t) / 16.0);
         hold(fan_is_hit_once(center, &ring.map(radius), tilt, [1, 4, 8][usize::from(msaa % 3)]));
@@ -31,8 +33,10 @@ pub fn render(bytes: &[u8]) {
         corners.truncate(48);
         let vector = |v: [Number; 3]| Vec3::from(v.map(Number::get));
         let positions = corners.iter().map(|corner| vector(corner.0)).collect();
-        let tex_coords = corners.iter().map(|corner| Vec2::from(corner.1.map(Number::get))).collect();
-        let triangles = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let tex_coords =
+            corners.iter().map(|corner| Vec2::from(corner.1.map(Number::get))).collect();
+        let triangles =
+            (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let surface = Some(Arc::new(texture.surface()));
         let scene = Scene {
             meshes: vec![Mesh::new(positions, tex_coords, vec![], triangles)],

@@ -44,9 +44,13 @@ impl Input {
     /// Maps of up to 12 x 12 texels.
     pub(crate) fn maps(&self) -> SurfaceMaps {
         let [w, h] = self.size.map(|n| 1 + u32::from(n % 12));
-        let at = |x: u32, y: u32, i: u32| f32::from(self.texels[((5 * x + 7 * y + x * y + i) % 24) as usize]) / 255.0;
+        let at = |x: u32, y: u32, i: u32| {
+            f32::from(self.texels[((5 * x + 7 * y + x * y + i) % 24) as usize]) / 255.0
+        };
         SurfaceMaps {
-            albedo: Some(ColorImage::from_fn(w, h, |x, y| [at(x, y, 3), at(x, y, 11), at(x, y, 17)])),
+            albedo: Some(ColorImage::from_fn(w, h, |x, y| {
+                [at(x, y, 3), at(x, y, 11), at(x, y, 17)]
+            })),
             height: Some(HeightImage::from_fn(w, h, |x, y| at(x, y, 0))),
             wrap: [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp][usize::from(self.wrap % 3)],
             ..Default::default()
@@ -60,21 +64,29 @@ impl Input {
         image
     }
 
-    /// Repeating maps of 16 x 16 texels, which turn and shift exactly, with depths that can be halved.
+    /// Repeating maps of 16 x 16 texels, which turn and shift exactly, with depths that can be
+    /// halved.
     pub(crate) fn even_maps(&self) -> SurfaceMaps {
         let at = |x: u32, y: u32, i: u32| self.texels[((5 * x + 7 * y + x * y + i) % 24) as usize];
         let color = |x, y| [at(x, y, 3), at(x, y, 11), at(x, y, 17)].map(|c| f32::from(c) / 255.0);
         let mut height = HeightImage::from_fn(16, 16, |x, y| f32::from(at(x, y, 0)) / 255.0);
         height.texels.iter_mut().for_each(|h| *h = *h & !3 | 2);
-        SurfaceMaps { albedo: Some(ColorImage::from_fn(16, 16, color)), height: Some(height), ..Default::default() }
+        SurfaceMaps {
+            albedo: Some(ColorImage::from_fn(16, 16, color)),
+            height: Some(height),
+            ..Default::default()
+        }
     }
 
-    /// The pixel at a 1024th of a repeat within one of the middle, and with derivatives of up to half a repeat.
+    /// The pixel at a 1024th of a repeat within one of the middle, and with derivatives of up to
+    /// half a repeat.
     pub(crate) fn near_pixel(&self) -> Footprint {
         let [center, dx, dy, displacement] = self.footprint.map(|pair| pair.map(Number::get));
-        let within = |pair: [f32; 2], most: f32| pair.map(|c| if c.abs() <= most { c } else { most });
+        let within =
+            |pair: [f32; 2], most: f32| pair.map(|c| if c.abs() <= most { c } else { most });
         let center = within(center, 1.0).map(|c| (c * 1024.0).round() / 1024.0);
-        Footprint::new(center, within(dx, 0.5), within(dy, 0.5), within(displacement, 0.6)).bounded()
+        Footprint::new(center, within(dx, 0.5), within(dy, 0.5), within(displacement, 0.6))
+            .bounded()
     }
 
     pub(crate) fn surface(&self) -> Surface {
@@ -117,7 +129,8 @@ impl Input {
 
     /// [`filter`](Self::filter) with another greatest anisotropy, if it has one.
     pub(crate) fn filter_limited(&self, max_anisotropy: f32) -> Filter {
-        let has_footprint = |filter: &Filter| !matches!(filter, Filter::Parallax(_) | Filter::Truth(_));
+        let has_footprint =
+            |filter: &Filter| !matches!(filter, Filter::Parallax(_) | Filter::Truth(_));
         let filters: Vec<Filter> = Filter::ALL.into_iter().filter(has_footprint).collect();
         let filter = filters[usize::from(self.filter) % filters.len()];
         match filter {
@@ -132,7 +145,8 @@ impl Input {
 /// A floor of small steps under a light, which command lines place a camera and lights around.
 pub(crate) fn floor() -> Scene {
     let steps = HeightImage::from_fn(8, 8, |x, y| ((x + y) % 4) as f32 / 3.0);
-    let surface = Surface::new(SurfaceMaps { height: Some(steps), ..Default::default() }).expect("valid maps");
+    let surface = Surface::new(SurfaceMaps { height: Some(steps), ..Default::default() })
+        .expect("valid maps");
     let corners = [(-4.0, 4.0), (4.0, 4.0), (4.0, -4.0), (-4.0, -4.0)];
     let positions = corners.map(|(x, z)| Vec3::new(x, -1.0, z)).to_vec();
     let tex_coords = corners.map(|(x, z)| Vec2::new(x, -z)).to_vec();

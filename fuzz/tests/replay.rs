@@ -1,4 +1,5 @@
-//! The fuzz targets without a fuzzer: their corpora with past findings, and 10,000 random or damaged inputs each.
+//! The fuzz targets without a fuzzer: their corpora with past findings, and 10,000 random or
+//! damaged inputs each.
 
 use fastrand::Rng;
 use std::fs;
@@ -7,14 +8,17 @@ use std::path::Path;
 /// The files of a target's corpus, by name.
 fn corpus(target: &str) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target);
-    let paths = fs::read_dir(&folder).expect("a corpus").map(|entry| entry.expect("an entry").path());
-    let mut files: Vec<_> = paths.map(|path| (path.display().to_string(), fs::read(&path).expect("read"))).collect();
+    let paths =
+        fs::read_dir(&folder).expect("a corpus").map(|entry| entry.expect("an entry").path());
+    let mut files: Vec<_> =
+        paths.map(|path| (path.display().to_string(), fs::read(&path).expect("read"))).collect();
     files.sort();
     assert!(!files.is_empty(), "{} is empty", folder.display());
     files
 }
 
-/// Bytes of up to 512, or a seed with some of its bytes changed, cut out, said twice or taken from another seed.
+/// Bytes of up to 512, or a seed with some of its bytes changed, cut out, said twice or taken from
+/// another seed.
 fn damaged(random: &mut Rng, seeds: &[(String, Vec<u8>)]) -> Vec<u8> {
     let mut below = |num: usize| random.usize(..num.max(1));
     if below(3) == 0 {
@@ -41,7 +45,8 @@ fn damaged(random: &mut Rng, seeds: &[(String, Vec<u8>)]) -> Vec<u8> {
     bytes
 }
 
-/// Replays a target's corpus, then 10,000 inputs from a fixed seed; `BASRELIEF_CASES` says how many instead.
+/// Replays a target's corpus, then 10,000 inputs from a fixed seed; `BASRELIEF_CASES` says how many
+/// instead.
 fn replay(target: &str, run: fn(&[u8])) {
     let seeds = corpus(target);
     let check = |what: &str, bytes: &[u8]| {
@@ -49,7 +54,8 @@ fn replay(target: &str, run: fn(&[u8])) {
         assert!(result.is_ok(), "{target} fails on {what}: {bytes:?}");
     };
     seeds.iter().for_each(|(path, bytes)| check(path, bytes));
-    let num = std::env::var("BASRELIEF_CASES").ok().and_then(|num| num.parse().ok()).unwrap_or(10_000);
+    let num =
+        std::env::var("BASRELIEF_CASES").ok().and_then(|num| num.parse().ok()).unwrap_or(10_000);
     let mut random = Rng::with_seed(2017);
     (0..num).for_each(|i| check(&format!("input {i}"), &damaged(&mut random, &seeds)));
 }

@@ -1,8 +1,10 @@
-//! Contains panics of decoders and parsers that we did not write: a hostile file must not end the caller's process.
+//! Contains panics of decoders and parsers that we did not write: a hostile file must not end the
+//! caller's process.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Runs `work`; a panic inside becomes `None`. What is printed of it is up to the process's panic hook.
+/// Runs `work`; a panic inside becomes `None`. What is printed of it is up to the process's panic
+/// hook.
 pub(crate) fn contain<T>(work: impl FnOnce() -> T) -> Option<T> {
     catch_unwind(AssertUnwindSafe(work)).ok()
 }

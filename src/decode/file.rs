@@ -4,7 +4,8 @@ use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::path::Path;
 
-/// Opens a regular file; devices, pipes and folders are refused before they are opened, since a pipe would block.
+/// Opens a regular file; devices, pipes and folders are refused before they are opened, since a
+/// pipe would block.
 pub(crate) fn open_regular(path: &Path) -> Result<File> {
     let check = |kind: fs::Metadata| {
         if kind.is_file() { Ok(()) } else { Err(Error::file(path, "not a regular file")) }

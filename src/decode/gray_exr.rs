@@ -1,4 +1,5 @@
-//! EXR files of one channel, as height maps are often saved; `image` reads only those of red, green and blue.
+//! EXR files of one channel, as height maps are often saved; `image` reads only those of red, green
+//! and blue.
 
 use exr::image::read::specific_channels::ReadSpecificChannel;
 use exr::math::Vec2;
@@ -18,11 +19,13 @@ pub(super) struct GrayExr<R> {
 }
 
 impl<R: BufRead + Seek> GrayExr<R> {
-    /// The file's luminance, or its only channel; gives the reader back, at its start, where the file has neither.
+    /// The file's luminance, or its only channel; gives the reader back, at its start, where the
+    /// file has neither.
     pub(super) fn new(mut reader: R) -> std::io::Result<Result<Self, R>> {
         let found = exr::block::read(&mut reader, false).ok().and_then(|file| {
             file.headers().iter().filter(|header| !header.deep).find_map(|header| {
-                let names: Vec<_> = header.channels.list.iter().map(|channel| &channel.name).collect();
+                let names: Vec<_> =
+                    header.channels.list.iter().map(|channel| &channel.name).collect();
                 let name = names
                     .iter()
                     .find(|name| **name == &Text::from("Y"))
@@ -42,7 +45,8 @@ impl<R: BufRead + Seek> GrayExr<R> {
 
 impl<R: BufRead + Seek> ImageDecoder for GrayExr<R> {
     fn dimensions(&self) -> (u32, u32) {
-        let [width, height] = [self.size.x(), self.size.y()].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+        let [width, height] =
+            [self.size.x(), self.size.y()].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
         (width, height)
     }
 
@@ -73,11 +77,16 @@ impl<R: BufRead + Seek> ImageDecoder for GrayExr<R> {
             .all_attributes()
             .from_buffered(reader)
             .map_err(|error| {
-                ImageError::Decoding(DecodingError::new(ImageFormatHint::Exact(ImageFormat::OpenExr), error))
+                ImageError::Decoding(DecodingError::new(
+                    ImageFormatHint::Exact(ImageFormat::OpenExr),
+                    error,
+                ))
             })?;
         let values = image.layer_data.channel_data.pixels;
         for (pixel, value) in bytes.chunks_exact_mut(12).zip(values) {
-            pixel.chunks_exact_mut(4).for_each(|channel| channel.copy_from_slice(&value.to_ne_bytes()));
+            pixel
+                .chunks_exact_mut(4)
+                .for_each(|channel| channel.copy_from_slice(&value.to_ne_bytes()));
         }
         Ok(())
     }

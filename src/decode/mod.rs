@@ -1,7 +1,7 @@
 //! Image files to samples, within limits.
 //!
-//! A file is opened only when it is a regular one, its head is checked against the limits before anything is allocated,
-//! and a panic of its decoder is a refusal.
+//! A file is opened only when it is a regular one, its head is checked against the limits before
+//! anything is allocated, and a panic of its decoder is a refusal.
 
 mod contain;
 mod file;
@@ -50,7 +50,11 @@ pub(crate) fn probe(path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
     contained(path, || {
         let decoder = decoder(open(path, limits)?, path, limits)?;
         let (width, height) = decoder.dimensions();
-        Ok(ImageInfo { size: [width, height], num_bytes: decoder.total_bytes(), color: decoder.color_type() })
+        Ok(ImageInfo {
+            size: [width, height],
+            num_bytes: decoder.total_bytes(),
+            color: decoder.color_type(),
+        })
     })
 }
 
@@ -80,14 +84,18 @@ fn samples_of(image: DynamicImage, path: &Path) -> Result<Samples> {
 
 /// Runs a decoder; its panic is a refusal of the file.
 fn contained<T>(path: &Path, work: impl FnOnce() -> Result<T>) -> Result<T> {
-    contain(work).unwrap_or_else(|| Err(Error::file(path, "the image is damaged (its decoder gave up)")))
+    contain(work)
+        .unwrap_or_else(|| Err(Error::file(path, "the image is damaged (its decoder gave up)")))
 }
 
 fn open(path: &Path, limits: ImageLimits) -> Result<BufReader<File>> {
     let file = open_regular(path)?;
     // Some decoders read the whole file into memory first.
     if file.metadata().is_ok_and(|data| data.len() > limits.bytes) {
-        return Err(Error::file(path, format!("larger than the limit of {} MiB", limits.bytes >> 20)));
+        return Err(Error::file(
+            path,
+            format!("larger than the limit of {} MiB", limits.bytes >> 20),
+        ));
     }
     Ok(BufReader::new(file))
 }
@@ -107,7 +115,9 @@ fn decoder<'a, R: BufRead + Seek + 'a>(
     within.max_alloc = Some(limits.bytes);
     let mut decoder = decoder_of_format(reader, path, within.clone())?;
     let (width, height) = decoder.dimensions();
-    let too_large = |reason: String, option| Err(Error::limit(path, format!("{width} x {height} {reason}"), option));
+    let too_large = |reason: String, option| {
+        Err(Error::limit(path, format!("{width} x {height} {reason}"), option))
+    };
     if width == 0 || height == 0 {
         return Err(Error::file(path, "the image has no texels"));
     }
@@ -118,7 +128,10 @@ fn decoder<'a, R: BufRead + Seek + 'a>(
         return too_large(format!("is more than {} pixels", limits.texels), "max_pixels");
     }
     if decoder.total_bytes() > limits.bytes {
-        return too_large(format!("texels need more than {} MiB", limits.bytes >> 20), "max_image_mib");
+        return too_large(
+            format!("texels need more than {} MiB", limits.bytes >> 20),
+            "max_image_mib",
+        );
     }
     decoder.set_limits(within).map_err(|e| Error::caused(path, e))?;
     Ok(decoder)
@@ -129,10 +142,12 @@ fn decoder_of_format<'a, R: BufRead + Seek + 'a>(
     path: &Path,
     limits: Limits,
 ) -> Result<Box<dyn ImageDecoder + 'a>> {
-    let mut reader = ImageReader::new(reader).with_guessed_format().map_err(|e| Error::caused(path, e))?;
+    let mut reader =
+        ImageReader::new(reader).with_guessed_format().map_err(|e| Error::caused(path, e))?;
     if reader.format().is_none() {
         // TGA has no signature: its name is all there is.
-        let format = ImageFormat::from_path(path).map_err(|_| Error::file(path, "not an image of a known format"))?;
+        let format = ImageFormat::from_path(path)
+            .map_err(|_| Error::file(path, "not an image of a known format"))?;
         reader.set_format(format);
     }
     if reader.format() == Some(ImageFormat::OpenExr) {

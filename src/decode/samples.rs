@@ -1,8 +1,9 @@
 //! Decoded samples to the maps of a surface.
 //!
-//! Samples keep their precision: 8 and 16 bit and float each have a path of their own to the 16 bits that are stored.
-//! Colours of integer formats are sRGB and become linear; floats are linear already. Heights and normals are linear.
-//! The first row of a file is the top of the picture; ours is the bottom, so rows are turned over.
+//! Samples keep their precision: 8 and 16 bit and float each have a path of their own to the 16
+//! bits that are stored. Colours of integer formats are sRGB and become linear; floats are linear
+//! already. Heights and normals are linear. The first row of a file is the top of the picture; ours
+//! is the bottom, so rows are turned over.
 
 use crate::texture::{ColorImage, HeightImage, NormalImage, linear_from_srgb};
 use image::DynamicImage;
@@ -73,13 +74,20 @@ impl Samples {
     ) -> Vec<T> {
         let mut texels = vec![T::default(); self.width * self.height];
         let stride = self.width * self.num_channels;
-        texels.par_chunks_exact_mut(self.width).rev().zip(values.par_chunks_exact(stride)).for_each(|(row, values)| {
-            for (texel, values) in row.iter_mut().zip(values.chunks_exact(self.num_channels)) {
-                let mut channels = [U::default(); 4];
-                channels.iter_mut().zip(values).for_each(|(channel, &value)| *channel = read(value));
-                *texel = make(&channels[..self.num_channels]);
-            }
-        });
+        texels
+            .par_chunks_exact_mut(self.width)
+            .rev()
+            .zip(values.par_chunks_exact(stride))
+            .for_each(|(row, values)| {
+                for (texel, values) in row.iter_mut().zip(values.chunks_exact(self.num_channels)) {
+                    let mut channels = [U::default(); 4];
+                    channels
+                        .iter_mut()
+                        .zip(values)
+                        .for_each(|(channel, &value)| *channel = read(value));
+                    *texel = make(&channels[..self.num_channels]);
+                }
+            });
         texels
     }
 
@@ -108,7 +116,8 @@ impl Samples {
                 (self.map_values(v, |c| table[usize::from(c)], rgb), 1.0)
             }
             Values::Bits16(v) => {
-                let table: Vec<u16> = (0..65536).into_par_iter().map(|c| linear_bits(c as f32 / 65535.0)).collect();
+                let table: Vec<u16> =
+                    (0..65536).into_par_iter().map(|c| linear_bits(c as f32 / 65535.0)).collect();
                 (self.map_values(v, |c| table[usize::from(c)], rgb), 1.0)
             }
             Values::Float(v) => self.float_color(v),
@@ -120,11 +129,16 @@ impl Samples {
         // The largest scale that a surface takes; brighter light is cut there.
         const MOST: f32 = 1e6;
         let bounded = |c: f32| if c > 0.0 { c.min(MOST) } else { 0.0 };
-        let is_light = |i: usize| self.num_channels % 2 == 1 || i % self.num_channels != self.num_channels - 1;
+        let is_light =
+            |i: usize| self.num_channels % 2 == 1 || i % self.num_channels != self.num_channels - 1;
         let light = values.par_iter().enumerate().filter(|(i, _)| is_light(*i));
         let brightest = light.map(|(_, &c)| bounded(c)).reduce(|| 0.0, f32::max);
         let scale = if brightest > 1e-6 { brightest } else { 1.0 };
-        let texels = self.map_values(values, |c| ((bounded(c) / scale).min(1.0) * 65535.0 + 0.5) as u16, rgb);
+        let texels = self.map_values(
+            values,
+            |c| ((bounded(c) / scale).min(1.0) * 65535.0 + 0.5) as u16,
+            rgb,
+        );
         (texels, scale)
     }
 
@@ -140,14 +154,16 @@ impl Samples {
             (_, [r, g, b, ..]) if r != g || g != b => 0.2126 * r + 0.7152 * g + 0.0722 * b,
             _ => c[0],
         };
-        let texels = self.map(|c| ((base + gain * value(c)).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16);
+        let texels =
+            self.map(|c| ((base + gain * value(c)).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16);
         HeightImage { width: self.width as u32, height: self.height as u32, texels }
     }
 
     /// Normals; `strength` multiplies x and y, and `green` (1 or -1) y.
     pub(crate) fn normal(&self, strength: f32, green: f32) -> NormalImage {
         let texels = self.map(|c| {
-            let [x, y, z] = [c[0], c[c.len().min(2) - 1], c[c.len().min(3) - 1]].map(|c| c.clamp(0.0, 1.0) * 2.0 - 1.0);
+            let [x, y, z] = [c[0], c[c.len().min(2) - 1], c[c.len().min(3) - 1]]
+                .map(|c| c.clamp(0.0, 1.0) * 2.0 - 1.0);
             let n = [x * strength, y * strength * green, z];
             // Only a strengthened normal may need shortening to fit.
             let longest = n.iter().fold(1.0_f32, |most, c| most.max(c.abs()));

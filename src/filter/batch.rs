@@ -12,16 +12,16 @@ pub struct Batch<'a> {
     pub pixels: &'a [Footprints],
     /// Under lights, those of each covered pixel, in order; else empty.
     pub lights: &'a [LocalLights],
-    /// Whether the horizon cuts each pixel's kernel finely enough for its weights to be exact to 1e-4. Pictures need not
-    /// that, and are drawn several times as fast without.
+    /// Whether the horizon cuts each pixel's kernel finely enough for its weights to be exact to
+    /// 1e-4. Pictures need not that, and are drawn several times as fast without.
     pub is_fine: bool,
 }
 
 /// The means of eight pixels' texels, in the units that the surface stores; see [`Texel`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Filtered {
-    /// Linear RGB. Of a filter that [asks for lights](crate::Filter::asks_for_lights), times what a white surface there
-    /// would show of them.
+    /// Linear RGB. Of a filter that [asks for lights](crate::Filter::asks_for_lights), times what a
+    /// white surface there would show of them.
     pub color: [PixelLanes; 3],
     /// Mean normals in the frame of the texture; only made under lights.
     pub normal: [PixelLanes; 3],
@@ -30,7 +30,8 @@ pub struct Filtered {
 /// What filtering took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Texels whose visibility was tested, or that were read; rows of sixteen lines for the horizon.
+    /// Texels whose visibility was tested, or that were read; rows of sixteen lines for the
+    /// horizon.
     pub num_tested: u64,
     /// Texels that were averaged.
     pub num_averaged: u64,
@@ -85,6 +86,10 @@ impl std::ops::AddAssign for Work {
 }
 
 /// Filters the covered pixels one by one.
-pub(super) fn each_covered(batch: &Batch, out: &mut [Filtered], mut filter: impl FnMut(&Footprints, usize) -> Texel) {
+pub(super) fn each_covered(
+    batch: &Batch,
+    out: &mut [Filtered],
+    mut filter: impl FnMut(&Footprints, usize) -> Texel,
+) {
     batch.covered().for_each(|(vector, pixels, lane)| out[vector].set(lane, &filter(pixels, lane)));
 }

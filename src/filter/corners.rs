@@ -1,23 +1,27 @@
 //! The two by two texels of a level around each of eight places.
 //!
-//! Neighbouring pixels look at neighbouring texels. So a row is read once for all places near one of them, sixteen words of
-//! it, and every place picks its own by a shuffle. Without a shuffle instruction each place is read by itself, to the same bits.
+//! Neighbouring pixels look at neighbouring texels. So a row is read once for all places near one
+//! of them, sixteen words of it, and every place picks its own by a shuffle. Without a shuffle
+//! instruction each place is read by itself, to the same bits.
 
 use crate::simd::{self, i32x8, join_words, u32x8, u32x16};
 use crate::texture::Rows;
 
-/// One plane's words at eight places: the eight texels to the left of each, then the eight to the right.
+/// One plane's words at eight places: the eight texels to the left of each, then the eight to the
+/// right.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Corners {
     pub(super) above: u32x16,
     pub(super) below: u32x16,
 }
 
-/// How far left of a place's texel the words begin that its neighbours pick from, and how many rows above it.
+/// How far left of a place's texel the words begin that its neighbours pick from, and how many rows
+/// above it.
 const BEFORE: i32 = 7;
 const ABOVE: i32 = 8;
 
-/// The first two planes' texels at columns `x` and `x + 1`, rows `y` and `y + 1` of the endless pattern, within 2^30.
+/// The first two planes' texels at columns `x` and `x + 1`, rows `y` and `y + 1` of the endless
+/// pattern, within 2^30.
 #[inline(always)]
 pub(super) fn corners(texels: &Rows, x: i32x8, y: i32x8) -> [Corners; 2] {
     if !simd::HAS_SHUFFLE {
@@ -45,21 +49,35 @@ fn picked(texels: &Rows, first: [i32; 2], columns: u32x8, rows: u32x8) -> [Corne
     let needed = (u32x8::splat(3) << rows).to_array().into_iter().fold(0, |all, bits| all | bits);
     let top = needed.trailing_zeros();
     let num_rows = 32 - needed.leading_zeros() - top;
-    let (mut starts, column) = (texels.row_starts(first[1] + top as i32), texels.run_start(first[0]));
+    let (mut starts, column) =
+        (texels.row_starts(first[1] + top as i32), texels.run_start(first[0]));
     // Rows down to the one of each place.
     let mut down = join_words([rows, rows]) - u32x16::splat(top);
     let mut corners = [Corners::default(); 2];
     for _ in 0..num_rows {
         let places = [down.simd_eq(u32x16::ZERO), down.simd_eq(u32x16::splat(u32::MAX))];
-        take(&texels.words()[starts.next() + column..], texels.stride(), numbers, places, &mut corners);
+        take(
+            &texels.words()[starts.next() + column..],
+            texels.stride(),
+            numbers,
+            places,
+            &mut corners,
+        );
         down -= u32x16::ONE;
     }
     corners
 }
 
-/// Of a row's words, those with the given numbers, for the places whose row, or whose next row, it is.
+/// Of a row's words, those with the given numbers, for the places whose row, or whose next row, it
+/// is.
 #[inline(always)]
-fn take(row: &[u32], stride: usize, numbers: u32x16, [is_above, is_below]: [u32x16; 2], corners: &mut [Corners; 2]) {
+fn take(
+    row: &[u32],
+    stride: usize,
+    numbers: u32x16,
+    [is_above, is_below]: [u32x16; 2],
+    corners: &mut [Corners; 2],
+) {
     // One check for both planes.
     let row = &row[..stride + 16];
     for (plane, corners) in corners.iter_mut().enumerate() {
@@ -69,7 +87,8 @@ fn take(row: &[u32], stride: usize, numbers: u32x16, [is_above, is_below]: [u32x
     }
 }
 
-/// Places of a row pick from columns of their own, such as those of pixels that lie along a slanted footprint.
+/// Places of a row pick from columns of their own, such as those of pixels that lie along a slanted
+/// footprint.
 #[inline(never)]
 fn row_by_row(texels: &Rows, x: i32x8, y: i32x8) -> [Corners; 2] {
     let mut corners = [Corners::default(); 2];
@@ -81,7 +100,8 @@ fn row_by_row(texels: &Rows, x: i32x8, y: i32x8) -> [Corners; 2] {
         let first = x.as_array()[place] - BEFORE;
         let columns = x - i32x8::splat(first);
         let is_near = !(beyond(columns, 14).to_bitmask() as u8);
-        let of_row = [row, row - 1].map(|row| y.simd_eq(i32x8::splat(row)).to_bitmask() as u8 & is_near);
+        let of_row =
+            [row, row - 1].map(|row| y.simd_eq(i32x8::splat(row)).to_bitmask() as u8 & is_near);
         let columns = simd::as_unsigned(columns) & u32x8::splat(15);
         let numbers = join_words([columns, columns + 1]);
         let [is_above, is_below] = of_row.map(|places| join_words([simd::bits(places); 2]));

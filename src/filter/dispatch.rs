@@ -18,19 +18,30 @@ pub struct Scratch {
 }
 
 impl Filter {
-    /// The means of a batch's covered pixels, into `out`, which has a vector for each of the batch's.
+    /// The means of a batch's covered pixels, into `out`, which has a vector for each of the
+    /// batch's.
     ///
-    /// A pixel of [`Self::Parallax`] and [`Self::Truth`] is the mean over [samples](Self::samples) of it; each sample is a
-    /// footprint of its own here.
-    pub fn colors(&self, prepared: &Prepared, batch: &Batch, scratch: &mut Scratch, out: &mut [Filtered]) -> Work {
+    /// A pixel of [`Self::Parallax`] and [`Self::Truth`] is the mean over [samples](Self::samples)
+    /// of it; each sample is a footprint of its own here.
+    pub fn colors(
+        &self,
+        prepared: &Prepared,
+        batch: &Batch,
+        scratch: &mut Scratch,
+        out: &mut [Filtered],
+    ) -> Work {
         let surface = prepared.surface();
         match self {
             Self::Nearest => {
-                each_covered(batch, out, |pixels, lane| points::nearest(surface.base(), pixels.lane(lane).hit));
+                each_covered(batch, out, |pixels, lane| {
+                    points::nearest(surface.base(), pixels.lane(lane).hit)
+                });
                 Work::default()
             }
             Self::Bilinear => {
-                each_covered(batch, out, |pixels, lane| points::bilinear(surface.base(), pixels.lane(lane).hit));
+                each_covered(batch, out, |pixels, lane| {
+                    points::bilinear(surface.base(), pixels.lane(lane).hit)
+                });
                 Work::default()
             }
             Self::Trilinear(_) => {
@@ -38,14 +49,22 @@ impl Filter {
                 Work::default()
             }
             Self::Ewa(ewa) => ewa::colors(surface, batch, ewa, out),
-            Self::Visible(visible) => visible::colors(surface, batch, visible, &mut scratch.set, out),
-            Self::Horizon(horizon) => horizon::colors(prepared, batch, horizon, &mut scratch.horizon, out),
+            Self::Visible(visible) => {
+                visible::colors(surface, batch, visible, &mut scratch.set, out)
+            }
+            Self::Horizon(horizon) => {
+                horizon::colors(prepared, batch, horizon, &mut scratch.horizon, out)
+            }
             Self::Parallax(Rays { samples }) => {
-                each_covered(batch, out, |pixels, lane| parallax::trace(surface, &pixels.lane(lane), *samples));
+                each_covered(batch, out, |pixels, lane| {
+                    parallax::trace(surface, &pixels.lane(lane), *samples)
+                });
                 Work::default()
             }
             Self::Truth(_) => {
-                each_covered(batch, out, |pixels, lane| truth::sample(surface, pixels.lane(lane).hit));
+                each_covered(batch, out, |pixels, lane| {
+                    truth::sample(surface, pixels.lane(lane).hit)
+                });
                 Work::default()
             }
         }
@@ -73,15 +92,32 @@ impl Filter {
         match self {
             Self::Nearest | Self::Bilinear | Self::Truth(_) => each(&|_, _| of_level(0)),
             Self::Trilinear(_) => each(&|pixels, lane| {
-                blended(levels::of_size(levels::longest_sides(surface.base(), pixels).as_array()[lane]))
+                blended(levels::of_size(
+                    levels::longest_sides(surface.base(), pixels).as_array()[lane],
+                ))
             }),
-            Self::Ewa(ewa) => each(&|pixels, lane| of_level(ewa::level(surface, pixels, lane, ewa))),
+            Self::Ewa(ewa) => {
+                each(&|pixels, lane| of_level(ewa::level(surface, pixels, lane, ewa)))
+            }
             Self::Visible(visible) => each(&|pixels, lane| {
-                of_level(levels::within_budget(surface, &pixels.lane(lane), &visible::ellipse_rule(visible)).0)
+                of_level(
+                    levels::within_budget(
+                        surface,
+                        &pixels.lane(lane),
+                        &visible::ellipse_rule(visible),
+                    )
+                    .0,
+                )
             }),
-            Self::Horizon(horizon) => horizon::levels(prepared, (pixels, is_lit), horizon, &mut scratch.horizon),
+            Self::Horizon(horizon) => {
+                horizon::levels(prepared, (pixels, is_lit), horizon, &mut scratch.horizon)
+            }
             Self::Parallax(Rays { samples }) => each(&|pixels, lane| {
-                blended(levels::of_size(levels::parallax_size(surface.base(), &pixels.lane(lane), *samples)))
+                blended(levels::of_size(levels::parallax_size(
+                    surface.base(),
+                    &pixels.lane(lane),
+                    *samples,
+                )))
             }),
         }
     }
@@ -94,8 +130,12 @@ impl Filter {
     /// Where the rays of a pixel go; `None` for a filter that takes a footprint for a pixel.
     pub fn samples(&self) -> Option<SampleOffsets> {
         match self {
-            Self::Parallax(Rays { samples }) => Some(SampleOffsets::new(&parallax::offsets(*samples), false)),
-            Self::Truth(Rays { samples }) => Some(SampleOffsets::new(&truth::offsets(*samples), true)),
+            Self::Parallax(Rays { samples }) => {
+                Some(SampleOffsets::new(&parallax::offsets(*samples), false))
+            }
+            Self::Truth(Rays { samples }) => {
+                Some(SampleOffsets::new(&truth::offsets(*samples), true))
+            }
             Self::Nearest
             | Self::Bilinear
             | Self::Trilinear(_)
@@ -105,7 +145,8 @@ impl Filter {
         }
     }
 
-    /// Whether lights are asked for each texel that is seen, so that colours hold their diffuse part already.
+    /// Whether lights are asked for each texel that is seen, so that colours hold their diffuse
+    /// part already.
     pub fn asks_for_lights(&self) -> bool {
         match self {
             Self::Horizon(_) => true,
@@ -132,6 +173,8 @@ impl Prepared {
         let batch = Batch { pixels: &pixels, lights: &[], is_fine: true };
         filter.colors(self, &batch, &mut Scratch::default(), &mut filtered);
         let scale = self.surface().color_scale() / FULL_F32;
-        (0..footprints.len()).map(|i| filtered[i / 8].lane(i % 8).color.map(|c| c * scale)).collect()
+        (0..footprints.len())
+            .map(|i| filtered[i / 8].lane(i % 8).color.map(|c| c * scale))
+            .collect()
     }
 }

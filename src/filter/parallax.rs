@@ -1,8 +1,9 @@
 //! Common practice, to compare with: parallax occlusion mapping with mip levels (Tatarchuk 2006).
 //!
-//! `samples` rays a pixel on a rotated grid over the pixel's square. Each takes 32 linear steps down the relief, then one
-//! secant step; heights and colour are trilinear at the level that 16x anisotropic filtering takes: the shorter side of
-//! the footprint, or a sixteenth of the longer if that is more, each shrunk by the density of the samples.
+//! `samples` rays a pixel on a rotated grid over the pixel's square. Each takes 32 linear steps
+//! down the relief, then one secant step; heights and colour are trilinear at the level that 16x
+//! anisotropic filtering takes: the shorter side of the footprint, or a sixteenth of the longer if
+//! that is more, each shrunk by the density of the samples.
 
 use super::points;
 use crate::footprint::{Footprint, levels};
@@ -11,12 +12,16 @@ use crate::texture::{Level, Surface, Texel};
 /// Linear steps from the polygon down to the deepest relief.
 const NUM_STEPS: u16 = 32;
 
-/// Offsets from the pixel's centre, in pixels, of `num` samples: a lattice, turned by the golden ratio.
+/// Offsets from the pixel's centre, in pixels, of `num` samples: a lattice, turned by the golden
+/// ratio.
 pub(super) fn offsets(num: u32) -> Vec<[f32; 2]> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let place = |i: u32| {
         let golden = f64::from(i) * GOLDEN + 0.5;
-        [((f64::from(i) + 0.5) / f64::from(num) - 0.5) as f32, (golden - golden.floor() - 0.5) as f32]
+        [
+            ((f64::from(i) + 0.5) / f64::from(num) - 0.5) as f32,
+            (golden - golden.floor() - 0.5) as f32,
+        ]
     };
     (0..num).map(place).collect()
 }

@@ -8,8 +8,9 @@ use crate::simd::PixelLanes;
 use crate::texture::Surface;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// A surface ready to be filtered: with its height field, what its mip levels lose in occlusion, and tables of what is seen
-/// from afar. What takes long is made when it is first asked for, and kept; copies share it.
+/// A surface ready to be filtered: with its height field, what its mip levels lose in occlusion,
+/// and tables of what is seen from afar. What takes long is made when it is first asked for, and
+/// kept; copies share it.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     surface: Arc<Surface>,
@@ -31,7 +32,11 @@ impl Prepared {
     pub fn new(surface: impl Into<Arc<Surface>>) -> Self {
         let surface = surface.into();
         let relief = (surface.relief_depth() > 0.0).then(|| {
-            Arc::new(Relief { field: OnceLock::new(), loss: LevelLoss::new(&surface), far: Mutex::default() })
+            Arc::new(Relief {
+                field: OnceLock::new(),
+                loss: LevelLoss::new(&surface),
+                far: Mutex::default(),
+            })
         });
         Self { surface, relief, has_far_field: true }
     }
@@ -69,10 +74,17 @@ impl Prepared {
         }
     }
 
-    /// The pixel at `base` with the derivatives `dx` and `dy` of the flat polygon's coordinates, in repeats a pixel, and the hit
-    /// of its view ray. `view` is the direction from the eye in the frame of the texture: how far it goes along u, along v and
-    /// down, all in repeats; any length above 0.
-    pub fn footprint(&self, base: [f32; 2], dx: [f32; 2], dy: [f32; 2], view: [f32; 3]) -> Footprint {
+    /// The pixel at `base` with the derivatives `dx` and `dy` of the flat polygon's coordinates, in
+    /// repeats a pixel, and the hit of its view ray. `view` is the direction from the eye in the
+    /// frame of the texture: how far it goes along u, along v and down, all in repeats; any length
+    /// above 0.
+    pub fn footprint(
+        &self,
+        base: [f32; 2],
+        dx: [f32; 2],
+        dy: [f32; 2],
+        view: [f32; 3],
+    ) -> Footprint {
         let Some(field) = self.field() else { return Footprint::new(base, dx, dy, [0.0; 2]) };
         let displacement = displacement(&view.map(PixelLanes::splat), field.relief_depth);
         let depth = march(field, &base.map(PixelLanes::splat), &displacement).as_array()[0];
@@ -104,8 +116,8 @@ impl Prepared {
         if let Some((_, far)) = kept.filter(|(kept, _)| *kept == mib) {
             return far;
         }
-        // Made without the lock: whoever held it and waited for its tasks could be given one that asks for it. Whoever is last
-        // is kept, and all are the same.
+        // Made without the lock: whoever held it and waited for its tasks could be given one that
+        // asks for it. Whoever is last is kept, and all are the same.
         let made = FarField::new(&self.surface, mib).map(Arc::new);
         *far.lock().unwrap_or_else(PoisonError::into_inner) = Some((mib, made.clone()));
         made

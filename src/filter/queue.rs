@@ -1,7 +1,8 @@
 //! Pixels that wait for their look-ups.
 //!
-//! Of the eight pixels of a pair of quads, small triangles cover one or two. Covered pixels are therefore packed into groups
-//! of eight before they are looked up in the texture, unless all of a pair are covered:
+//! Of the eight pixels of a pair of quads, small triangles cover one or two. Covered pixels are
+//! therefore packed into groups of eight before they are looked up in the texture, unless all of a
+//! pair are covered:
 //!
 //! ```text
 //! pairs     [x . . . . . . .] [. x x . . . . .] [x x x x x x x x]
@@ -11,7 +12,8 @@
 use super::batch::Filtered;
 use crate::simd::PixelLanes;
 
-/// Most groups that are looked up at once: their steps overlap, and eight fit the first cache with the texels they read.
+/// Most groups that are looked up at once: their steps overlap, and eight fit the first cache with
+/// the texels they read.
 const AT_ONCE: usize = 8;
 
 /// What the look-ups need to know of eight pixels: u, v and the footprint's size.
@@ -66,7 +68,8 @@ impl Queue {
         }
     }
 
-    /// Fills the empty lanes of a lone group with copies of its first pixel, so that they read texels that are needed anyway.
+    /// Fills the empty lanes of a lone group with copies of its first pixel, so that they read
+    /// texels that are needed anyway.
     pub(super) fn fill_up(&mut self) {
         if self.num < 8 {
             for lanes in &mut self.groups[0] {
@@ -109,6 +112,7 @@ impl Queue {
 fn scatter(pixels: &[u32], found: &[PixelLanes; 3], out: &mut [Filtered]) {
     for (lane, pixel) in pixels.iter().enumerate() {
         let color = &mut out[*pixel as usize / 8].color;
-        (0..3).for_each(|c| color[c].as_mut_array()[*pixel as usize % 8] = found[c].as_array()[lane]);
+        (0..3)
+            .for_each(|c| color[c].as_mut_array()[*pixel as usize % 8] = found[c].as_array()[lane]);
     }
 }

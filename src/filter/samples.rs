@@ -7,7 +7,8 @@ use crate::simd::PixelLanes;
 pub struct SampleOffsets {
     /// Eight samples at a time: x, y, and how many of them there are.
     pub groups: Vec<([PixelLanes; 2], usize)>,
-    /// Whether each ray is lit where it lies on the screen; else where the pixel's centre does, as shaders do.
+    /// Whether each ray is lit where it lies on the screen; else where the pixel's centre does, as
+    /// shaders do.
     pub is_lit_apart: bool,
 }
 
@@ -15,9 +16,12 @@ impl SampleOffsets {
     /// Offsets in lanes.
     pub(super) fn new(offsets: &[[f32; 2]], is_lit_apart: bool) -> Self {
         let lanes = |group: &[[f32; 2]], i: usize| {
-            PixelLanes::new(std::array::from_fn(|lane| group.get(lane).map_or(0.0, |offset| offset[i])))
+            PixelLanes::new(std::array::from_fn(|lane| {
+                group.get(lane).map_or(0.0, |offset| offset[i])
+            }))
         };
-        let groups = offsets.chunks(8).map(|group| ([0, 1].map(|i| lanes(group, i)), group.len())).collect();
+        let groups =
+            offsets.chunks(8).map(|group| ([0, 1].map(|i| lanes(group, i)), group.len())).collect();
         Self { groups, is_lit_apart }
     }
 }

@@ -1,4 +1,5 @@
-//! Trilinear look-ups of eight pixels at once, to the bits of [`points::trilinear`](super::points::trilinear).
+//! Trilinear look-ups of eight pixels at once, to the bits of
+//! [`points::trilinear`](super::points::trilinear).
 //!
 //! Levels and places may differ from pixel to pixel. Lanes are pixels.
 
@@ -7,7 +8,9 @@ use super::corners::{Corners, corners};
 use super::points;
 use super::queue::Queue;
 use crate::footprint::levels::{longest_sides, of_sizes};
-use crate::simd::{LineLanes, PixelLanes, high_halves, i32x8, join, lanes, low_halves, split, u32x16};
+use crate::simd::{
+    LineLanes, PixelLanes, high_halves, i32x8, join, lanes, low_halves, split, u32x16,
+};
 use crate::texture::{Rows, Surface};
 
 /// Texel coordinates are clamped to so far from the pattern's first, so that neighbours fit an i32.
@@ -55,12 +58,17 @@ pub(super) fn colors(surface: &Surface, batch: &Batch, out: &mut [Filtered]) {
     }
 }
 
-/// The mean colours of groups of eight pixels: their places (u and v in repeats, within 1e6) and the lengths of their
-/// footprints in base texels. `sink` gets each group's index and colours.
+/// The mean colours of groups of eight pixels: their places (u and v in repeats, within 1e6) and
+/// the lengths of their footprints in base texels. `sink` gets each group's index and colours.
 #[inline(always)]
-pub fn look_up(surface: &Surface, groups: &[[PixelLanes; 3]], mut sink: impl FnMut(usize, [PixelLanes; 3])) {
+pub fn look_up(
+    surface: &Surface,
+    groups: &[[PixelLanes; 3]],
+    mut sink: impl FnMut(usize, [PixelLanes; 3]),
+) {
     let Some(first) = groups.first() else { return };
-    // The next group's places are found before this one's texels are read: neither waits for the other.
+    // The next group's places are found before this one's texels are read: neither waits for the
+    // other.
     let mut levels = TwoLevels::new(surface, 0);
     let mut next = Spots::new(surface, &mut levels, first);
     for (index, group) in groups.iter().enumerate() {
@@ -78,8 +86,8 @@ pub fn look_up(surface: &Surface, groups: &[[PixelLanes; 3]], mut sink: impl FnM
     }
 }
 
-/// A level and the next coarser one, or itself where there is none, and their texels a repeat: neighbouring pixels have the
-/// same.
+/// A level and the next coarser one, or itself where there is none, and their texels a repeat:
+/// neighbouring pixels have the same.
 #[derive(Clone, Copy)]
 struct TwoLevels<'a> {
     index: usize,
@@ -89,15 +97,24 @@ struct TwoLevels<'a> {
 
 impl<'a> TwoLevels<'a> {
     fn new(surface: &'a Surface, index: usize) -> Self {
-        let levels = [index, (index + 1).min(surface.last_level())].map(|index| &surface.levels()[index]);
-        Self { index, rows: levels.map(|level| level.rows(false)), texels: levels.map(|l| l.texels_per_repeat()) }
+        let levels =
+            [index, (index + 1).min(surface.last_level())].map(|index| &surface.levels()[index]);
+        Self {
+            index,
+            rows: levels.map(|level| level.rows(false)),
+            texels: levels.map(|l| l.texels_per_repeat()),
+        }
     }
 }
 
 impl Spots {
     /// Sets `levels` to the first pixel's.
     #[inline(always)]
-    fn new<'a>(surface: &'a Surface, levels: &mut TwoLevels<'a>, &[u, v, size]: &[PixelLanes; 3]) -> Self {
+    fn new<'a>(
+        surface: &'a Surface,
+        levels: &mut TwoLevels<'a>,
+        &[u, v, size]: &[PixelLanes; 3],
+    ) -> Self {
         let (numbers, blend) = of_sizes(size, surface.last_level());
         let index = numbers.as_array()[0];
         if index as usize != levels.index {

@@ -1,10 +1,11 @@
 //! Ground truth: many rays a pixel, each traced to its exact hit.
 //!
-//! The samples have the density of the filter kernel, `exp(-2 r^2)` on the disc of radius one pixel: sample i of n lies at
-//! the radius that encloses the share `(i + 1/2) / n` of the kernel, a golden angle further round than the one before
-//! (Vogel 1979), so that every sample stands for an equal share. Each is a ray of its own, through its own place on the
-//! screen, with its own texture coordinates and slope; colour is bilinear at the base level at the hit. Shares no code with
-//! the filters it judges, beyond texel access.
+//! The samples have the density of the filter kernel, `exp(-2 r^2)` on the disc of radius one
+//! pixel: sample i of n lies at the radius that encloses the share `(i + 1/2) / n` of the kernel, a
+//! golden angle further round than the one before (Vogel 1979), so that every sample stands for an
+//! equal share. Each is a ray of its own, through its own place on the screen, with its own texture
+//! coordinates and slope; colour is bilinear at the base level at the hit. Shares no code with the
+//! filters it judges, beyond texel access.
 
 use crate::texture::{Surface, Texel};
 
@@ -27,7 +28,8 @@ pub(super) fn offsets(num: u32) -> Vec<[f32; 2]> {
     offsets
 }
 
-/// The natural logarithm of a number from 0.1 to 1, by exact operations alone: the fourth root, then the series of atanh.
+/// The natural logarithm of a number from 0.1 to 1, by exact operations alone: the fourth root,
+/// then the series of atanh.
 fn ln(y: f64) -> f64 {
     let root = y.sqrt().sqrt();
     let z = (root - 1.0) / (root + 1.0);

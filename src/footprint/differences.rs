@@ -1,7 +1,7 @@
 //! The derivatives of the texture coordinates of a pixel, from its 2x2 quad.
 //!
-//! Formula (2) takes differences of the undisplaced coordinates, formula (3) of the displaced ones, with the offsets
-//! (m, r) at (x, y), (n, o) at (x+1, y) and (p, s) at (x, y+1):
+//! Formula (2) takes differences of the undisplaced coordinates, formula (3) of the displaced ones,
+//! with the offsets (m, r) at (x, y), (n, o) at (x+1, y) and (p, s) at (x, y+1):
 //!
 //! ```text
 //! meant    du/dx = (u(x+1,y) + n) - (u(x,y) + m)    dv/dx = (v(x+1,y) + o) - (v(x,y) + r)
@@ -14,9 +14,10 @@
 //!
 //! The x-difference is taken in the pixel's row of the quad and the y-difference in its column.
 //!
-//! Where the neighbour's ray passes an outline of the relief and hits another part of it, formula (3) is the way from one
-//! part to the other, and says nothing of the surface at the hit. The paper does not speak of this. A rule with a
-//! `max_stretch` therefore takes formula (2) for a difference that (3) makes many times longer.
+//! Where the neighbour's ray passes an outline of the relief and hits another part of it, formula
+//! (3) is the way from one part to the other, and says nothing of the surface at the hit. The paper
+//! does not speak of this. A rule with a `max_stretch` therefore takes formula (2) for a difference
+//! that (3) makes many times longer.
 
 use crate::relief::finite;
 use crate::settings::{Derivatives, FootprintRule, Formulas};
@@ -25,11 +26,12 @@ use crate::simd::{PixelLanes, permute};
 /// `(d/dx, d/dy)` of u and v for eight pixels.
 type Pair = [[PixelLanes; 2]; 2];
 
-/// Formula (2) or (3), as meant or as printed, in each quad of `uv` with the relief's `offset`, in repeats a pixel:
-/// `(du/dx, dv/dx)` and `(du/dy, dv/dy)`. They may be infinite or NaN.
+/// Formula (2) or (3), as meant or as printed, in each quad of `uv` with the relief's `offset`, in
+/// repeats a pixel: `(du/dx, dv/dx)` and `(du/dy, dv/dy)`. They may be infinite or NaN.
 ///
-/// For formula (3) as meant under a `max_stretch`, a jump of the relief between two pixels (a difference more than that many
-/// times as long as that of (2), in texture repeats) is not taken for the slope of a surface: there stands that of (2).
+/// For formula (3) as meant under a `max_stretch`, a jump of the relief between two pixels (a
+/// difference more than that many times as long as that of (2), in texture repeats) is not taken
+/// for the slope of a surface: there stands that of (2).
 #[inline(always)]
 pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &FootprintRule) -> Pair {
     if rule.formulas == Formulas::Printed {
@@ -52,12 +54,15 @@ pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &Footpr
 #[inline(always)]
 fn in_quads([u, v]: [PixelLanes; 2]) -> Pair {
     // The quad's pixels at the high and the low ends of each lane's row and column.
-    let dx = |c: PixelLanes| permute(c, [1, 1, 3, 3, 5, 5, 7, 7]) - permute(c, [0, 0, 2, 2, 4, 4, 6, 6]);
-    let dy = |c: PixelLanes| permute(c, [2, 3, 2, 3, 6, 7, 6, 7]) - permute(c, [0, 1, 0, 1, 4, 5, 4, 5]);
+    let dx =
+        |c: PixelLanes| permute(c, [1, 1, 3, 3, 5, 5, 7, 7]) - permute(c, [0, 0, 2, 2, 4, 4, 6, 6]);
+    let dy =
+        |c: PixelLanes| permute(c, [2, 3, 2, 3, 6, 7, 6, 7]) - permute(c, [0, 1, 0, 1, 4, 5, 4, 5]);
     [[dx(u), dx(v)], [dy(u), dy(v)]]
 }
 
-/// A derivative of formula (3), or that of (2) where the square of its length is more than `most` times larger.
+/// A derivative of formula (3), or that of (2) where the square of its length is more than `most`
+/// times larger.
 fn without_jump(displaced: [PixelLanes; 2], flat: [PixelLanes; 2], most: f32) -> [PixelLanes; 2] {
     let squared = |[u, v]: [PixelLanes; 2]| u * u + v * v;
     let [displaced, flat] = [displaced, flat].map(|derivative| derivative.map(finite));
@@ -76,7 +81,10 @@ fn letter_by_letter(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &Footp
         let at = |i: usize| Corner { u: u[i], v: v[i], du: m[i], dv: r[i] };
         let [dudx, dvdx, _, _] = at_pixel(at(row), at(row + 1), at(row), rule);
         let [_, _, dudy, dvdy] = at_pixel(at(column), at(column), at(column + 2), rule);
-        [dudx, dvdx, dudy, dvdy].into_iter().zip(&mut result).for_each(|(d, lanes)| lanes[lane] = d);
+        [dudx, dvdx, dudy, dvdy]
+            .into_iter()
+            .zip(&mut result)
+            .for_each(|(d, lanes)| lanes[lane] = d);
     }
     let [dudx, dvdx, dudy, dvdy] = result.map(PixelLanes::new);
     [[dudx, dvdx], [dudy, dvdy]]

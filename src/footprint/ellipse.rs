@@ -5,15 +5,17 @@
 //! F = (Ux Vy - Uy Vx)^2 as meant (Heckbert)    F = (Ux Vy + Uy Vx)^2 as printed
 //! ```
 //!
-//! With `J` the matrix of the derivatives, `J J^T = [[C, -B/2], [-B/2, A]]` and `F = det(J J^T) = A C - B^2/4`.
-//! What the paper leaves out (Heckbert 1989): a reconstruction kernel is added to A and C, so that the ellipse never falls
-//! between texels, and the shorter axis is widened where the longer exceeds the greatest anisotropy.
+//! With `J` the matrix of the derivatives, `J J^T = [[C, -B/2], [-B/2, A]]` and `F = det(J J^T) = A
+//! C - B^2/4`. What the paper leaves out (Heckbert 1989): a reconstruction kernel is added to A and
+//! C, so that the ellipse never falls between texels, and the shorter axis is widened where the
+//! longer exceeds the greatest anisotropy.
 
 use super::Footprint;
 use crate::settings::{Formulas, RECONSTRUCTION};
 use crate::simd::TexelLanes;
 
-/// Least half axis in texels: what a magnified pixel covers is that much at least, so that no division overflows.
+/// Least half axis in texels: what a magnified pixel covers is that much at least, so that no
+/// division overflows.
 pub const LEAST_AXIS: f32 = 1.0 / 256.0;
 
 /// The coefficients of formula (1).
@@ -38,17 +40,24 @@ impl Ellipse {
             Formulas::Meant => ux * vy - uy * vx,
             Formulas::Printed => ux * vy + uy * vx,
         };
-        Self { a: vx * vx + vy * vy, b: -2.0 * (ux * vx + uy * vy), c: ux * ux + uy * uy, f: root * root }
+        Self {
+            a: vx * vx + vy * vy,
+            b: -2.0 * (ux * vx + uy * vy),
+            c: ux * ux + uy * uy,
+            f: root * root,
+        }
     }
 
-    /// The ellipse with the reconstruction kernel added and its anisotropy bounded. A printed F stays as printed.
+    /// The ellipse with the reconstruction kernel added and its anisotropy bounded. A printed F
+    /// stays as printed.
     pub fn widened(self, max_anisotropy: f32, formulas: Formulas) -> Self {
         let wide = Self { a: self.a + RECONSTRUCTION, c: self.c + RECONSTRUCTION, ..self };
         let bounded = wide.bounded(max_anisotropy);
         if formulas == Formulas::Meant { bounded } else { Self { f: self.f, ..bounded } }
     }
 
-    /// The ellipse with its shorter axis widened to the longer over `max_anisotropy`, and at least to [`LEAST_AXIS`].
+    /// The ellipse with its shorter axis widened to the longer over `max_anisotropy`, and at least
+    /// to [`LEAST_AXIS`].
     pub fn bounded(self, max_anisotropy: f32) -> Self {
         self.bounded_with_axes(max_anisotropy).0
     }
@@ -63,7 +72,8 @@ impl Ellipse {
         if lift == 0.0 {
             return (Self { f: long * short, ..self }, [short, long]);
         }
-        // The square of the short axis grows along its own direction, the eigenvector of `short`; a circle all around.
+        // The square of the short axis grows along its own direction, the eigenvector of `short`; a
+        // circle all around.
         let (a, b, c) = if long - short > 1e-6 * long {
             let share = lift / (long - short);
             (a + share * (long - a).max(0.0), b - share * b, c + share * (long - c).max(0.0))
@@ -73,7 +83,8 @@ impl Ellipse {
         (Self { a, b, c, f: long * (short + lift) }, [short + lift, long])
     }
 
-    /// Squares of the shorter and the longer half axis in texels: the eigenvalues of `[[C, -B/2], [-B/2, A]]`.
+    /// Squares of the shorter and the longer half axis in texels: the eigenvalues of `[[C, -B/2],
+    /// [-B/2, A]]`.
     pub fn squared_axes(&self) -> [f32; 2] {
         let Self { a, b, c, .. } = *self;
         let (mean, half) = ((a + c) * 0.5, ((a - c) * (a - c) * 0.25 + b * b * 0.25).sqrt());
@@ -95,7 +106,8 @@ impl Ellipse {
 
     /// Greatest |V| inside.
     pub fn half_height(&self) -> f32 {
-        (4.0 * self.a * self.f / (4.0 * self.a * self.c - self.b * self.b).max(f32::MIN_POSITIVE)).sqrt()
+        (4.0 * self.a * self.f / (4.0 * self.a * self.c - self.b * self.b).max(f32::MIN_POSITIVE))
+            .sqrt()
     }
 
     /// The least and greatest U inside on the line of constant V; `None` where the line misses.
@@ -121,7 +133,11 @@ impl RowQuadric {
     /// The quadric of the row at V.
     pub fn new(ellipse: &Ellipse, v: f32) -> Self {
         let inverse_f = 1.0 / ellipse.f;
-        Self { a: ellipse.a * inverse_f, bv: ellipse.b * v * inverse_f, cvv: ellipse.c * v * v * inverse_f }
+        Self {
+            a: ellipse.a * inverse_f,
+            bv: ellipse.b * v * inverse_f,
+            cvv: ellipse.c * v * v * inverse_f,
+        }
     }
 
     /// `r^2` at eight places U.

@@ -3,8 +3,9 @@
 use super::{Ellipse, Footprints, LEAST_AXIS};
 use crate::simd::PixelLanes;
 
-/// Eight ellipses `A U^2 + B U V + C V^2 = F` around their middles, bounded like [`Ellipse::bounded`], and the squares of
-/// their half axes. As meant: kernels in lanes do not evaluate the printed F.
+/// Eight ellipses `A U^2 + B U V + C V^2 = F` around their middles, bounded like
+/// [`Ellipse::bounded`], and the squares of their half axes. As meant: kernels in lanes do not
+/// evaluate the printed F.
 #[derive(Clone, Copy, Debug)]
 pub struct Ellipses {
     /// `Vx^2 + Vy^2`.
@@ -54,8 +55,10 @@ impl Ellipses {
         let least = PixelLanes::splat(LEAST_AXIS * LEAST_AXIS);
         let long = ((a + c) * 0.5 + half).fast_max(least);
         let short = determinant / long;
-        let lift = ((long * (1.0 / (max_anisotropy * max_anisotropy))).fast_max(least) - short).fast_max(zero);
-        // The square of the short axis grows along its own direction, the eigenvector of `short`; a circle all around.
+        let lift = ((long * (1.0 / (max_anisotropy * max_anisotropy))).fast_max(least) - short)
+            .fast_max(zero);
+        // The square of the short axis grows along its own direction, the eigenvector of `short`; a
+        // circle all around.
         let gap = long - short;
         let is_long = gap.simd_gt(long * 1e-6);
         let share = lift / is_long.select(gap, PixelLanes::ONE);

@@ -14,18 +14,19 @@ use crate::relief::{HeightField, MAX_SLOPE, displacement, finite, march};
 use crate::settings::FootprintRule;
 use crate::simd::{PixelLanes, set_bits};
 
-/// Longest derivative that is kept, in texture repeats a pixel: a footprint of that length holds the mean of all texels
-/// as well as a longer one does.
+/// Longest derivative that is kept, in texture repeats a pixel: a footprint of that length holds
+/// the mean of all texels as well as a longer one does.
 const MAX_LENGTH: f32 = 16.0;
 
-/// Farthest place that is kept, in repeats: beyond, an f32 tells fewer than ten places a repeat apart.
+/// Farthest place that is kept, in repeats: beyond, an f32 tells fewer than ten places a repeat
+/// apart.
 const FARTHEST: f32 = 1e6;
 
 /// A value along u and a value along v for each pixel, in texture repeats.
 type Uv = [PixelLanes; 2];
 
-/// Eight pixels in the texture: those of two 2x2 quads, lane `4 * quad + 2 * dy + dx`. All in texture repeats, finite and
-/// bounded, so that filters need not check.
+/// Eight pixels in the texture: those of two 2x2 quads, lane `4 * quad + 2 * dy + dx`. All in
+/// texture repeats, finite and bounded, so that filters need not check.
 #[derive(Clone, Copy, Debug)]
 pub struct Footprints {
     /// Where the view rays meet the polygon.
@@ -42,13 +43,14 @@ pub struct Footprints {
     pub covered: u8,
 }
 
-/// One pixel in the texture, in texture repeats: a lane of [`Footprints`], and what a renderer with derivatives of its own
-/// fills in.
+/// One pixel in the texture, in texture repeats: a lane of [`Footprints`], and what a renderer with
+/// derivatives of its own fills in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
     /// Where the view ray meets the polygon, `(u, v)`.
     pub base: [f32; 2],
-    /// Where it first meets the relief; filters that look for visible texels by themselves do not ask for it.
+    /// Where it first meets the relief; filters that look for visible texels by themselves do not
+    /// ask for it.
     pub hit: [f32; 2],
     /// `(du/dx, dv/dx)` a pixel.
     pub dx: [f32; 2],
@@ -59,8 +61,9 @@ pub struct Footprint {
 }
 
 impl Footprints {
-    /// The pixels of two quads with the texture coordinates `uv` and view rays `view` (see [`displacement`]), over the
-    /// relief of `field` or over the bare polygon, by the rule of a filter.
+    /// The pixels of two quads with the texture coordinates `uv` and view rays `view` (see
+    /// [`displacement`]), over the relief of `field` or over the bare polygon, by the rule of a
+    /// filter.
     #[inline(always)]
     pub fn of_quads(
         uv: &Uv,
@@ -78,17 +81,22 @@ impl Footprints {
     /// Up to eight pixels, all filtered. Any numbers are made finite and bounded.
     pub fn pack(pixels: &[Footprint]) -> Self {
         let lanes = |of: &dyn Fn(&Footprint) -> [f32; 2]| {
-            [0, 1]
-                .map(|axis| PixelLanes::new(std::array::from_fn(|lane| pixels.get(lane).map_or(0.0, |p| of(p)[axis]))))
+            [0, 1].map(|axis| {
+                PixelLanes::new(std::array::from_fn(|lane| {
+                    pixels.get(lane).map_or(0.0, |p| of(p)[axis])
+                }))
+            })
         };
         let [base, hit] = [lanes(&|p| p.base), lanes(&|p| p.hit)];
-        let [dx, dy, displacement] = [lanes(&|p| p.dx), lanes(&|p| p.dy), lanes(&|p| p.displacement)];
+        let [dx, dy, displacement] =
+            [lanes(&|p| p.dx), lanes(&|p| p.dy), lanes(&|p| p.displacement)];
         let covered = if pixels.len() < 8 { (1 << pixels.len()) - 1 } else { u8::MAX };
         Self { base, hit, dx, dy, displacement, covered }.made_finite()
     }
 
-    /// Samples of one pixel: rays of their own through `uv` along `view`, with the pixel's derivatives. `covered` has a bit for
-    /// each ray that meets the surface; those whose hit is no place are left out.
+    /// Samples of one pixel: rays of their own through `uv` along `view`, with the pixel's
+    /// derivatives. `covered` has a bit for each ray that meets the surface; those whose hit is no
+    /// place are left out.
     pub fn of_samples(
         (uv, view): (&Uv, &[PixelLanes; 3]),
         field: Option<&HeightField>,
@@ -104,7 +112,8 @@ impl Footprints {
         Self { base: *uv, hit, dx, dy, displacement, covered }.bounded()
     }
 
-    /// One pixel in all lanes, of which the first is filtered. Any numbers are made finite and bounded.
+    /// One pixel in all lanes, of which the first is filtered. Any numbers are made finite and
+    /// bounded.
     pub fn splat(footprint: &Footprint) -> Self {
         let Footprint { base, hit, dx, dy, displacement } = *footprint;
         let [base, hit, dx, dy, displacement] =
@@ -130,40 +139,51 @@ impl Footprints {
         set_bits(self.covered)
     }
 
-    /// [`Self::bounded`] for displacements of any numbers, too: those of a relief are bounded already.
+    /// [`Self::bounded`] for displacements of any numbers, too: those of a relief are bounded
+    /// already.
     fn made_finite(self) -> Self {
         let most = PixelLanes::splat(MAX_SLOPE);
         let displacement = self.displacement.map(|d| finite(d).fast_max(-most).fast_min(most));
         Self { displacement, ..self }.bounded()
     }
 
-    /// Places beyond 1e6 repeats become 0, derivatives are shortened to 16 repeats, and what is not a number becomes 0.
+    /// Places beyond 1e6 repeats become 0, derivatives are shortened to 16 repeats, and what is not
+    /// a number becomes 0.
     #[inline(always)]
     fn bounded(self) -> Self {
         let is_short = |c: PixelLanes| c.abs().simd_le(PixelLanes::splat(MAX_LENGTH));
         let Self { dx, dy, .. } = self;
         // Long derivatives are rare: their division stays out of the common path.
-        let all_short = (is_short(dx[0]) & is_short(dx[1]) & is_short(dy[0]) & is_short(dy[1])).all();
+        let all_short =
+            (is_short(dx[0]) & is_short(dx[1]) & is_short(dy[0]) & is_short(dy[1])).all();
         let [dx, dy] = if all_short { [dx, dy] } else { [shortened(dx), shortened(dy)] };
         Self { base: bounded_place(self.base), hit: bounded_place(self.hit), dx, dy, ..self }
     }
 }
 
 impl Footprint {
-    /// A pixel around `base` with derivatives `dx` and `dy`, seen along `displacement`; the hit is the base place.
+    /// A pixel around `base` with derivatives `dx` and `dy`, seen along `displacement`; the hit is
+    /// the base place.
     pub fn new(base: [f32; 2], dx: [f32; 2], dy: [f32; 2], displacement: [f32; 2]) -> Self {
         Self { base, hit: base, dx, dy, displacement }
     }
 
-    /// The pixel made finite and bounded, as filters do with any numbers, NaN and infinity included.
+    /// The pixel made finite and bounded, as filters do with any numbers, NaN and infinity
+    /// included.
     pub fn bounded(self) -> Self {
         Footprints::splat(&self).lane(0)
     }
 }
 
-/// The displacements of view rays, and how far each moves to where it first meets the relief, if that is looked for.
+/// The displacements of view rays, and how far each moves to where it first meets the relief, if
+/// that is looked for.
 #[inline(always)]
-fn traced(uv: &Uv, view: &[PixelLanes; 3], field: Option<&HeightField>, is_traced: bool) -> (Uv, Uv) {
+fn traced(
+    uv: &Uv,
+    view: &[PixelLanes; 3],
+    field: Option<&HeightField>,
+    is_traced: bool,
+) -> (Uv, Uv) {
     let Some(field) = field else { return ([PixelLanes::ZERO; 2], [PixelLanes::ZERO; 2]) };
     let displacement = displacement(view, field.relief_depth);
     if !is_traced {

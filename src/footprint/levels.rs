@@ -11,7 +11,8 @@
 //! | [`for_sweep`] | `horizon` near by | the finest with at most so many texels across, less what the level would lose in occlusion | rows of sixteen lines |
 //! | [`for_tables`] | `horizon` far away | the finest of the tables with at most so many texels across and along | four tables' texels |
 //!
-//! Levels are counted from the finest, 0. A level's texels are twice as large as the next finer one's.
+//! Levels are counted from the finest, 0. A level's texels are twice as large as the next finer
+//! one's.
 
 use super::{Ellipse, Ellipses, Footprint, Footprints};
 use crate::settings::{Ewa, Formulas, RECONSTRUCTION};
@@ -19,35 +20,39 @@ use crate::simd::{PixelLanes, i32x8, lanes, mask};
 use crate::texture::{Level, Surface};
 use std::f32::consts::FRAC_1_PI;
 
-/// Most texels of an ellipse, whatever the budget: larger ones take a coarser level, so that a pixel's time is bounded.
+/// Most texels of an ellipse, whatever the budget: larger ones take a coarser level, so that a
+/// pixel's time is bounded.
 pub const MAX_TEXELS: f32 = (1 << 20) as f32;
 
-/// Most rows of a pixel's sweep; a longer one takes a coarser level. Bounds the time of a pixel for any input. Measured:
-/// with 512 the wall loses 0.4 dB, and thin high ridges 8 dB.
+/// Most rows of a pixel's sweep; a longer one takes a coarser level. Bounds the time of a pixel for
+/// any input. Measured: with 512 the wall loses 0.4 dB, and thin high ridges 8 dB.
 pub const MAX_ROWS: f32 = 1024.0;
 
 /// Greatest anisotropy of common practice.
 const PARALLAX_ANISOTROPY: f32 = 16.0;
 
-/// Shorter half axis of the ellipse in texels of the level that is taken, at least: the Gaussian's standard deviation, half
-/// of that, is then 0.7 texels, below which their grid undersamples it. At most twice as much.
+/// Shorter half axis of the ellipse in texels of the level that is taken, at least: the Gaussian's
+/// standard deviation, half of that, is then 0.7 texels, below which their grid undersamples it. At
+/// most twice as much.
 const LEAST_SHORT: f32 = 1.4;
 
 /// Variance of `exp(-2 r^2)` over the unit disc along a line through its middle.
 pub const DISC_VARIANCE: f32 = 0.171_7;
 
-/// The coarsest level is taken whose bilinear kernel has at most this many times the variance that is wanted across the
-/// ellipse.
+/// The coarsest level is taken whose bilinear kernel has at most this many times the variance that
+/// is wanted across the ellipse.
 const MOST_BLUR: f32 = 1.7;
 
-/// Texels of a table across a footprint's shorter axis: at least this many, and less than twice as many.
+/// Texels of a table across a footprint's shorter axis: at least this many, and less than twice as
+/// many.
 const TABLE_TEXELS_ACROSS: f32 = 3.0;
 
-/// Most texels of a table along the longer axis: a thin footprint at the horizon takes a coarser table, since time goes with
-/// the length.
+/// Most texels of a table along the longer axis: a thin footprint at the horizon takes a coarser
+/// table, since time goes with the length.
 const TABLE_TEXELS_ALONG: f32 = 32.0;
 
-/// The finer level and the share of the coarser one for a texel size, in base texels: linear in size between two levels.
+/// The finer level and the share of the coarser one for a texel size, in base texels: linear in
+/// size between two levels.
 pub fn of_size(size: f32) -> (usize, f32) {
     if size.is_nan() || size <= 1.0 {
         return (0, 0.0);
@@ -106,8 +111,13 @@ impl EllipseRule {
     }
 }
 
-/// The finest level on which the ellipse holds at most the budget's texels, and the ellipse in its texels.
-pub fn within_budget(surface: &Surface, footprint: &Footprint, rule: &EllipseRule) -> (usize, Ellipse) {
+/// The finest level on which the ellipse holds at most the budget's texels, and the ellipse in its
+/// texels.
+pub fn within_budget(
+    surface: &Surface,
+    footprint: &Footprint,
+    rule: &EllipseRule,
+) -> (usize, Ellipse) {
     let budget = if rule.texel_budget == 0 { MAX_TEXELS } else { rule.texel_budget as f32 };
     let at = |level: usize| rule.ellipse(footprint, &surface.levels()[level]);
     let last = surface.last_level();
@@ -115,17 +125,22 @@ pub fn within_budget(surface: &Surface, footprint: &Footprint, rule: &EllipseRul
     (level, at(level))
 }
 
-/// The level for the mean of all texels of an ellipse, and the ellipse in its texels, which have their own kernel less what
-/// averaging into the level has done already.
+/// The level for the mean of all texels of an ellipse, and the ellipse in its texels, which have
+/// their own kernel less what averaging into the level has done already.
 #[inline(always)]
 pub fn for_gaussian(surface: &Surface, footprint: &Footprint, ewa: &Ewa) -> (usize, Ellipse) {
     let Ewa { formulas, max_anisotropy, texel_budget, texel_kernel, .. } = *ewa;
     if texel_budget == 0 || formulas == Formulas::Printed {
-        return within_budget(surface, footprint, &EllipseRule { formulas, texel_budget, max_anisotropy });
+        return within_budget(
+            surface,
+            footprint,
+            &EllipseRule { formulas, texel_budget, max_anisotropy },
+        );
     }
     let base = surface.base().texels_per_repeat();
     let inverse_base = base.map(|texels| 1.0 / texels);
-    let (ellipse, [short, long]) = Ellipse::new(footprint, base, formulas).bounded_with_axes(max_anisotropy);
+    let (ellipse, [short, long]) =
+        Ellipse::new(footprint, base, formulas).bounded_with_axes(max_anisotropy);
     let most = (texel_budget as f32).min(MAX_TEXELS);
     let (mut index, last) = (0, surface.last_level());
     // Square texels of the base level in one of the level.
@@ -139,18 +154,21 @@ pub fn for_gaussian(surface: &Surface, footprint: &Footprint, ewa: &Ewa) -> (usi
     let texels = surface.levels()[index].texels_per_repeat();
     let [su, sv] = [texels[0] * inverse_base[0], texels[1] * inverse_base[1]];
     let kernel = kernel(area, texel_kernel);
-    let (a, b, c) = (ellipse.a * sv * sv + kernel, ellipse.b * su * sv, ellipse.c * su * su + kernel);
+    let (a, b, c) =
+        (ellipse.a * sv * sv + kernel, ellipse.b * su * sv, ellipse.c * su * su + kernel);
     (index, Ellipse { a, b, c, f: a * c - b * b * 0.25 })
 }
 
-/// What is added to the squares of an ellipse's axes on a level with texels of that area: the texels' own kernel, less what
-/// averaging into the level has done to them (variance 1/12 of a texel, 1/12 of a base texel for the base level).
+/// What is added to the squares of an ellipse's axes on a level with texels of that area: the
+/// texels' own kernel, less what averaging into the level has done to them (variance 1/12 of a
+/// texel, 1/12 of a base texel for the base level).
 fn kernel(area: f32, texel_kernel: f32) -> f32 {
     (texel_kernel + 1.0 / 3.0) / area - 1.0 / 3.0
 }
 
-/// The levels for lines of texels along the longer axes of ellipses in base texels: as coarse as the shorter axes allow, and
-/// so that at most so many texels lie along a line. The greatest `n` with `4^n` up to a size is half the exponent of a float.
+/// The levels for lines of texels along the longer axes of ellipses in base texels: as coarse as
+/// the shorter axes allow, and so that at most so many texels lie along a line. The greatest `n`
+/// with `4^n` up to a size is half the exponent of a float.
 #[inline(always)]
 pub fn for_lines(ellipses: &Ellipses, most_along: f32, last: usize) -> i32x8 {
     let power_of_4 = |size: PixelLanes| ((mask(size) >> 23_i32) - 127) >> 1_i32;
@@ -171,8 +189,9 @@ pub struct SweepExtent {
     pub depth: f32,
 }
 
-/// The finest level on which a sweep is at most so many texels across, and short enough. What the level loses in occlusion
-/// the caller has taken into account: each level finer doubles `most_across`.
+/// The finest level on which a sweep is at most so many texels across, and short enough. What the
+/// level loses in occlusion the caller has taken into account: each level finer doubles
+/// `most_across`.
 pub fn for_sweep(surface: &Surface, extent: &SweepExtent, most_across: f32) -> usize {
     let base = surface.base().texels_per_repeat();
     let fits = |level: &usize| {
@@ -184,9 +203,14 @@ pub fn for_sweep(surface: &Surface, extent: &SweepExtent, most_across: f32) -> u
     (0..last).find(fits).unwrap_or(last)
 }
 
-/// The finest level, from the tables' first on, on which a footprint is at most so many texels across and along, and the
-/// ellipse in its texels.
-pub fn for_tables(surface: &Surface, first: usize, footprint: &Footprint, max_anisotropy: f32) -> (usize, Ellipse) {
+/// The finest level, from the tables' first on, on which a footprint is at most so many texels
+/// across and along, and the ellipse in its texels.
+pub fn for_tables(
+    surface: &Surface,
+    first: usize,
+    footprint: &Footprint,
+    max_anisotropy: f32,
+) -> (usize, Ellipse) {
     let at = |level: usize| {
         let texels = surface.levels()[level].texels_per_repeat();
         Ellipse::new(footprint, texels, Formulas::Meant).bounded(max_anisotropy)

@@ -26,7 +26,8 @@ impl Format {
     /// # Errors
     /// Names the file and the extensions that are known.
     pub fn of(path: &Path) -> Result<Self> {
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let extension =
+            path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
         Ok(match extension.as_str() {
             "png" => Self::Png,
             "jpg" | "jpeg" => Self::Jpeg,
@@ -34,7 +35,12 @@ impl Format {
             "tif" | "tiff" => Self::Tiff,
             "bmp" => Self::Bmp,
             "exr" => Self::Exr,
-            _ => return Err(Error::file(path, "the name must end in .png, .jpg, .tga, .tiff, .bmp or .exr")),
+            _ => {
+                return Err(Error::file(
+                    path,
+                    "the name must end in .png, .jpg, .tga, .tiff, .bmp or .exr",
+                ));
+            }
         })
     }
 

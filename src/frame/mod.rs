@@ -1,7 +1,7 @@
 //! The finished picture: linear pixels, or their 8-bit sRGB encoding, and files of it.
 //!
-//! A file is encoded in memory, written under a temporary name in its own folder, flushed to the disk and renamed:
-//! whoever looks finds the whole old file or the whole new one ([`write_whole`]).
+//! A file is encoded in memory, written under a temporary name in its own folder, flushed to the
+//! disk and renamed: whoever looks finds the whole old file or the whole new one ([`write_whole`]).
 
 mod encode;
 mod format;
@@ -28,7 +28,8 @@ pub struct Frame<P = [f32; 4]> {
     pub width: u32,
     /// Rows; row 0 is the top.
     pub height: u32,
-    /// Row by row: linear RGB, premultiplied by the fourth component, the opacity, or what [`Pixel`] says.
+    /// Row by row: linear RGB, premultiplied by the fourth component, the opacity, or what
+    /// [`Pixel`] says.
     pub pixels: Vec<P>,
 }
 
@@ -44,7 +45,8 @@ impl<P: Pixel> Frame<P> {
     /// If `region` does not lie within the frame.
     pub fn crop(&mut self, region: Region) {
         assert!(region.is_within(self.width, self.height), "the region must lie within the frame");
-        let [x, y, width, stride] = [region.x, region.y, region.width, self.width].map(|v| v as usize);
+        let [x, y, width, stride] =
+            [region.x, region.y, region.width, self.width].map(|v| v as usize);
         for row in 0..region.height as usize {
             let start = (y + row) * stride + x;
             self.pixels.copy_within(start..start + width, row * width);
@@ -75,7 +77,8 @@ impl<P: Pixel> Frame<P> {
         self.pixels.par_iter().map(over_black).collect()
     }
 
-    /// 8-bit sRGB samples, row by row from the top: four a pixel with straight opacity, or three over black.
+    /// 8-bit sRGB samples, row by row from the top: four a pixel with straight opacity, or three
+    /// over black.
     pub fn to_bytes(&self, has_opacity: bool) -> Vec<u8> {
         if has_opacity { self.to_rgba8().into_flattened() } else { self.to_rgb8().into_flattened() }
     }
@@ -91,15 +94,22 @@ mod tests {
         for opacity in [1.0, 0.5] {
             frame.pixels[4] = [0.1, 0.2, 0.3, opacity];
             for format in [Format::Png, Format::Tga, Format::Tiff, Format::Bmp] {
-                let read = image::load_from_memory_with_format(&frame.encode(format).unwrap(), format.of_image());
+                let read = image::load_from_memory_with_format(
+                    &frame.encode(format).unwrap(),
+                    format.of_image(),
+                );
                 let expected: Vec<u8> = frame.to_rgba8().into_iter().flatten().collect();
                 assert_eq!(read.unwrap().to_rgba8().into_raw(), expected, "{format:?} {opacity}");
             }
         }
-        let read = image::load_from_memory(&frame.encode(Format::Exr).unwrap()).unwrap().into_rgba32f();
+        let read =
+            image::load_from_memory(&frame.encode(Format::Exr).unwrap()).unwrap().into_rgba32f();
         assert_eq!(read.into_raw(), frame.pixels.concat());
-        let read = image::load_from_memory(&frame.encode(Format::Jpeg).unwrap()).unwrap().into_rgb8();
-        assert!(read.get_pixel(0, 0).0.iter().zip(frame.to_rgb8()[0]).all(|(&a, b)| a.abs_diff(b) < 12));
+        let read =
+            image::load_from_memory(&frame.encode(Format::Jpeg).unwrap()).unwrap().into_rgb8();
+        assert!(
+            read.get_pixel(0, 0).0.iter().zip(frame.to_rgb8()[0]).all(|(&a, b)| a.abs_diff(b) < 12)
+        );
     }
 
     #[test]
@@ -109,10 +119,20 @@ mod tests {
             linear.pixels[7] = [0.1, 0.2, 0.3, opacity];
             let bytes = Frame { width: 5, height: 3, pixels: linear.to_rgba8() };
             for format in [Format::Png, Format::Tga, Format::Tiff, Format::Bmp] {
-                assert!(bytes.encode(format).unwrap() == linear.encode(format).unwrap(), "{format:?} {opacity}");
+                assert!(
+                    bytes.encode(format).unwrap() == linear.encode(format).unwrap(),
+                    "{format:?} {opacity}"
+                );
             }
             let close = |(a, b): (&u8, &u8)| a.abs_diff(*b) <= u8::from(opacity < 1.0);
-            assert!(bytes.to_rgb8().as_flattened().iter().zip(linear.to_rgb8().as_flattened()).all(close));
+            assert!(
+                bytes
+                    .to_rgb8()
+                    .as_flattened()
+                    .iter()
+                    .zip(linear.to_rgb8().as_flattened())
+                    .all(close)
+            );
             assert!(bytes.encode(Format::Exr).is_ok());
         }
     }

@@ -2,8 +2,9 @@
 
 use crate::texture::{linear_from_srgb8, srgb8_from_linear, srgb8_of_four};
 
-/// A pixel of a [`Frame`](super::Frame): `[f32; 4]` is linear RGB, premultiplied by the fourth component, the opacity;
-/// `[u8; 4]` is 8-bit sRGB with straight opacity, in a quarter of the memory.
+/// A pixel of a [`Frame`](super::Frame): `[f32; 4]` is linear RGB, premultiplied by the fourth
+/// component, the opacity; `[u8; 4]` is 8-bit sRGB with straight opacity, in a quarter of the
+/// memory.
 pub trait Pixel: Copy + Default + Send + Sync + private::Sealed {
     /// Sets a row from pixels in linear light, premultiplied by their opacity.
     fn set_row(row: &mut [Self], linear: &[[f32; 4]]);
@@ -38,7 +39,8 @@ impl Pixel for [f32; 4] {
 
 impl Pixel for [u8; 4] {
     fn set_row(row: &mut [Self], linear: &[[f32; 4]]) {
-        let ((fours, last), (from, last_from)) = (row.as_chunks_mut::<4>(), linear.as_chunks::<4>());
+        let ((fours, last), (from, last_from)) =
+            (row.as_chunks_mut::<4>(), linear.as_chunks::<4>());
         for (four, linear) in fours.iter_mut().zip(from) {
             if linear.iter().all(|pixel| pixel[3] == 1.0) {
                 four.as_flattened_mut().copy_from_slice(&srgb8_of_four(linear));
@@ -85,7 +87,8 @@ mod tests {
 
     #[test]
     fn a_row_is_its_pixels() {
-        let numbers = [f32::NAN, -1.0, 0.0, 1e-9, 1.2e-4, 1.6e-4, 0.2, 0.5, 0.999, 1.0, 3.0, f32::INFINITY];
+        let numbers =
+            [f32::NAN, -1.0, 0.0, 1e-9, 1.2e-4, 1.6e-4, 0.2, 0.5, 0.999, 1.0, 3.0, f32::INFINITY];
         for first in 0..numbers.len() {
             let color = |i: usize| [0, 1, 2].map(|c| numbers[(first + 5 * i + c) % numbers.len()]);
             let row: Vec<[f32; 4]> = (0..11)

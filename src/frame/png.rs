@@ -1,8 +1,9 @@
-//! PNG row by row from the top, so that a picture may be larger than memory: the one way in which this crate writes PNG.
+//! PNG row by row from the top, so that a picture may be larger than memory: the one way in which
+//! this crate writes PNG.
 //!
-//! In: rows of 8-bit sRGB samples in bands of any height. Out: the same bytes however the rows are split into bands.
-//! A picture that is a part of a larger one says so in a text chunk, `basrelief-region`, as `x,y,width,height of
-//! width x height`: [`Part`].
+//! In: rows of 8-bit sRGB samples in bands of any height. Out: the same bytes however the rows are
+//! split into bands. A picture that is a part of a larger one says so in a text chunk,
+//! `basrelief-region`, as `x,y,width,height of width x height`: [`Part`].
 
 use crate::error::{Error, Result};
 use crate::settings::Region;
@@ -23,8 +24,8 @@ pub struct Part {
 }
 
 impl Part {
-    /// What the text chunks of a PNG file, keywords and texts, say of it; `None` where they say nothing, or nothing that
-    /// fits its size.
+    /// What the text chunks of a PNG file, keywords and texts, say of it; `None` where they say
+    /// nothing, or nothing that fits its size.
     pub fn of_chunks<'a>(
         [width, height]: [u32; 2],
         chunks: impl IntoIterator<Item = (&'a str, &'a str)>,
@@ -53,7 +54,11 @@ impl FromStr for Part {
                 let region = Region { x, y, width, height };
                 let part = Self { region, whole: [of_width, of_height] };
                 // Spelt in one way only, so that nothing else is taken for it.
-                if region.is_within(of_width, of_height) && part.to_string() == text { Some(part) } else { None }
+                if region.is_within(of_width, of_height) && part.to_string() == text {
+                    Some(part)
+                } else {
+                    None
+                }
             }
             _ => None,
         }
@@ -77,12 +82,19 @@ pub struct PngHead {
 /// Writes a PNG file: `bands` are rows of 8-bit sRGB samples from the top, three or four a pixel.
 ///
 /// # Errors
-/// The first error of `bands`; or why `sink` does not take the file, or that the bands are not as many rows as the head says.
-pub fn write_png(sink: impl Write, head: &PngHead, bands: impl IntoIterator<Item = Result<Vec<u8>>>) -> Result<()> {
+/// The first error of `bands`; or why `sink` does not take the file, or that the bands are not as
+/// many rows as the head says.
+pub fn write_png(
+    sink: impl Write,
+    head: &PngHead,
+    bands: impl IntoIterator<Item = Result<Vec<u8>>>,
+) -> Result<()> {
     let refuse = |e: png::EncodingError| match e {
-        png::EncodingError::IoError(e) => {
-            Error::Picture { what: "PNG", reason: format!("cannot be written: {e}"), source: Some(e.into()) }
-        }
+        png::EncodingError::IoError(e) => Error::Picture {
+            what: "PNG",
+            reason: format!("cannot be written: {e}"),
+            source: Some(e.into()),
+        },
         e => Error::picture_caused("PNG", e),
     };
     let mut encoder = png::Encoder::new(sink, head.width, head.height);
@@ -108,12 +120,14 @@ mod tests {
     fn encode(head: &PngHead, bytes: &[u8], rows: usize) -> Result<Vec<u8>> {
         let mut file = Vec::new();
         let stride = head.width as usize * if head.has_opacity { 4 } else { 3 };
-        write_png(&mut file, head, bytes.chunks(stride * rows).map(|band| Ok(band.to_vec()))).map(|()| file)
+        write_png(&mut file, head, bytes.chunks(stride * rows).map(|band| Ok(band.to_vec())))
+            .map(|()| file)
     }
 
     #[test]
     fn bands_do_not_show() {
-        let part = Part { region: Region { x: 2, y: 3, width: 301, height: 97 }, whole: [1000, 500] };
+        let part =
+            Part { region: Region { x: 2, y: 3, width: 301, height: 97 }, whole: [1000, 500] };
         for (has_opacity, part) in [(false, None), (true, Some(part))] {
             let head = PngHead { width: 301, height: 97, has_opacity, part };
             let bytes: Vec<u8> = (0..301 * 97 * if has_opacity { 4 } else { 3_u32 })
@@ -123,7 +137,8 @@ mod tests {
             assert!([1, 8, 50].iter().all(|&rows| encode(&head, &bytes, rows).unwrap() == whole));
             let mut reader = png::Decoder::new(std::io::Cursor::new(&whole)).read_info().unwrap();
             let info = reader.info();
-            let chunks = info.uncompressed_latin1_text.iter().map(|chunk| (&*chunk.keyword, &*chunk.text));
+            let chunks =
+                info.uncompressed_latin1_text.iter().map(|chunk| (&*chunk.keyword, &*chunk.text));
             assert_eq!(Part::of_chunks([info.width, info.height], chunks), part);
             let mut read = vec![0; bytes.len()];
             reader.next_frame(&mut read).unwrap();
@@ -142,7 +157,14 @@ mod tests {
     fn parts_are_read_as_they_are_written() {
         let part = Part { region: Region { x: 1, y: 2, width: 3, height: 4 }, whole: [50, 60] };
         assert_eq!(part.to_string().parse::<Part>().unwrap(), part);
-        for bad in ["", "1,2,3,4", "1,2,3,4 of 3x9", "1,2,3,4 of 50,60", "+1,2,3,4 of 50x60", "1,2,0,4 of 50x60"] {
+        for bad in [
+            "",
+            "1,2,3,4",
+            "1,2,3,4 of 3x9",
+            "1,2,3,4 of 50,60",
+            "+1,2,3,4 of 50x60",
+            "1,2,0,4 of 50x60",
+        ] {
             assert!(bad.parse::<Part>().is_err(), "{bad}");
         }
     }

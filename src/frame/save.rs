@@ -1,7 +1,7 @@
 //! Files that are there as a whole or not at all.
 //!
-//! A temporary file is locked while its writer lives, so that one that a killed writer left behind is known by its lock
-//! being free, and the next check of the same folder removes it.
+//! A temporary file is locked while its writer lives, so that one that a killed writer left behind
+//! is known by its lock being free, and the next check of the same folder removes it.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File, OpenOptions, Permissions};
@@ -22,11 +22,12 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     file.finish()
 }
 
-/// A file that appears under its name when it is finished, and not before: at any moment, even if the process is killed
-/// or the disk fills up, the name stands for the whole old or the whole new file.
+/// A file that appears under its name when it is finished, and not before: at any moment, even if
+/// the process is killed or the disk fills up, the name stands for the whole old or the whole new
+/// file.
 ///
-/// A link is followed; the permissions of an older file are kept. Devices and pipes are written to directly. Dropped
-/// without [`WholeFile::finish`], it leaves nothing behind.
+/// A link is followed; the permissions of an older file are kept. Devices and pipes are written to
+/// directly. Dropped without [`WholeFile::finish`], it leaves nothing behind.
 #[derive(Debug)]
 pub struct WholeFile {
     path: PathBuf,
@@ -69,7 +70,8 @@ impl WholeFile {
     pub fn finish(self) -> Result<()> {
         let Self { path, sink } = self;
         let finish = |file: NamedTempFile, target: &Path, permissions: Option<Permissions>| {
-            permissions.map_or(Ok(()), |permissions| fs::set_permissions(file.path(), permissions))?;
+            permissions
+                .map_or(Ok(()), |permissions| fs::set_permissions(file.path(), permissions))?;
             file.as_file().sync_all()?;
             file.persist(target)?;
             flush_folder(target)
@@ -104,8 +106,8 @@ fn unwritable(path: &Path, error: io::Error) -> Error {
     Error::File { path: path.into(), line: None, reason, source: Some(error.into()) }
 }
 
-/// Checks, before the work, that [`write_whole`] could write the file `path`: its folder exists and takes files. Removes
-/// from the folder what writers that were killed left there.
+/// Checks, before the work, that [`write_whole`] could write the file `path`: its folder exists and
+/// takes files. Removes from the folder what writers that were killed left there.
 ///
 /// # Errors
 /// Names the file and what is in the way.
@@ -158,11 +160,13 @@ fn folder(path: &Path) -> &Path {
 fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
     let mut name = tempfile::Builder::new();
     name.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]);
-    // The crate's own choice, readable by the owner alone, is for secrets; the user's mask shall decide.
+    // The crate's own choice, readable by the owner alone, is for secrets; the user's mask shall
+    // decide.
     #[cfg(unix)]
     name.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     loop {
-        // Its message names the temporary file, of which the user knows nothing: keep the kind only.
+        // Its message names the temporary file, of which the user knows nothing: keep the kind
+        // only.
         let file = name.tempfile_in(folder(target)).map_err(|e| io::Error::from(e.kind()))?;
         // Where files cannot be locked, none is ever taken for abandoned.
         let _ = file.as_file().lock();
@@ -179,7 +183,8 @@ fn remove_abandoned(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| entry.file_name().to_str().is_some_and(is_temporary)) {
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        // Held until the file is removed, so that a writer that has just made it sees that it is gone.
+        // Held until the file is removed, so that a writer that has just made it sees that it is
+        // gone.
         let lock = if is_file { File::open(entry.path()).ok() } else { None };
         if lock.as_ref().is_some_and(|file| file.try_lock().is_ok()) {
             let _ = fs::remove_file(entry.path());
@@ -197,7 +202,10 @@ mod tests {
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {
-        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect()
+        fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect()
     }
 
     #[test]
@@ -216,7 +224,9 @@ mod tests {
     fn what_cannot_be_a_file_is_refused_by_name() {
         let folder = tempfile::tempdir().unwrap();
         let missing = folder.path().join("missing/a.png");
-        for (path, reason) in [(missing.as_path(), "folder does not exist"), (folder.path(), "is a folder")] {
+        for (path, reason) in
+            [(missing.as_path(), "folder does not exist"), (folder.path(), "is a folder")]
+        {
             let text = check_writable(path).unwrap_err().to_string();
             assert!(text.contains(reason) && text.contains(&path.display().to_string()), "{text}");
             assert_eq!(write_whole(path, b"x").unwrap_err().to_string(), text);
@@ -234,7 +244,10 @@ mod tests {
         let mut found = names(folder.path());
         found.sort();
         assert_eq!(found.len(), 2, "{found:?}");
-        assert!(living.path().exists() && found.contains(&".basrelief-abc.png".into()), "{found:?}");
+        assert!(
+            living.path().exists() && found.contains(&".basrelief-abc.png".into()),
+            "{found:?}"
+        );
     }
 
     #[cfg(unix)]

@@ -1,8 +1,10 @@
-//! Clips a triangle against the near plane and the guard band (Sutherland and Hodgman 1974), in homogeneous coordinates.
+//! Clips a triangle against the near plane and the guard band (Sutherland and Hodgman 1974), in
+//! homogeneous coordinates.
 //!
-//! A point `p = (x, y, w)` is inside a plane `n` where `n . p >= 0`: `w - near`, and `GUARD w - x` with its like. Where an
-//! edge leaves, the new vertex is computed from the inside end to the outside end, so both triangles of a shared edge
-//! compute the same numbers, whichever way round they run through it.
+//! A point `p = (x, y, w)` is inside a plane `n` where `n . p >= 0`: `w - near`, and `GUARD w - x`
+//! with its like. Where an edge leaves, the new vertex is computed from the inside end to the
+//! outside end, so both triangles of a shared edge compute the same numbers, whichever way round
+//! they run through it.
 
 use super::projection::{GUARD, Projection};
 
@@ -25,7 +27,8 @@ impl Polygon {
     }
 
     fn push(&mut self, point: Point) {
-        // A polygon that rounding made concave may have a corner more than theory allows: without area, and left out.
+        // A polygon that rounding made concave may have a corner more than theory allows: without
+        // area, and left out.
         if self.num_corners < MAX_CORNERS {
             self.corners[self.num_corners] = point;
             self.num_corners += 1;
@@ -33,7 +36,8 @@ impl Polygon {
     }
 }
 
-/// The part of a finite triangle before the near plane and within the guard band; `None` if all of it is out of the frame.
+/// The part of a finite triangle before the near plane and within the guard band; `None` if all of
+/// it is out of the frame.
 pub(super) fn clip(triangle: [Point; 3], projection: &Projection) -> Option<Polygon> {
     if is_out_of_frame(&triangle, projection) {
         return None;

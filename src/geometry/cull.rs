@@ -1,7 +1,8 @@
 //! Which of eight snapped triangles can be seen: lanes are triangles.
 //!
-//! The orientation is the sign of `area = (b - a) x (c - a)`, y down: positive is clockwise as displayed, which is the
-//! back. Products of snapped differences stay below 2^52, where f64 is exact.
+//! The orientation is the sign of `area = (b - a) x (c - a)`, y down: positive is clockwise as
+//! displayed, which is the back. Products of snapped differences stay below 2^52, where f64 is
+//! exact.
 
 use super::projection::Projection;
 use super::samples::{offset_bounds, sample_offsets};
@@ -24,8 +25,8 @@ pub(super) struct Culler {
 pub(super) struct Kept {
     /// A bit for each lane that may hold a sample of the frame.
     pub(super) lanes: u32,
-    /// A bit for each lane seen from behind, whose second and third corners stay; those of the others swap places, so
-    /// that every area is positive.
+    /// A bit for each lane seen from behind, whose second and third corners stay; those of the
+    /// others swap places, so that every area is positive.
     pub(super) is_back: u32,
 }
 
@@ -39,8 +40,9 @@ impl Culler {
         }
     }
 
-    /// The triangles that are not culled: not without area, not from behind (if that matters), with a pixel of the frame
-    /// that has a sample in the bounding box, and, where that box is of at most two pixels a side, with a sample inside.
+    /// The triangles that are not culled: not without area, not from behind (if that matters), with
+    /// a pixel of the frame that has a sample in the bounding box, and, where that box is of at
+    /// most two pixels a side, with a sample inside.
     #[inline(always)]
     pub(super) fn keep(&self, corners: &CornerLanes) -> Kept {
         let area = twice_area(corners);
@@ -69,12 +71,14 @@ impl Culler {
         Kept { lanes, is_back }
     }
 
-    /// For triangles of at most two pixels a side: a bit for each with a sample inside or on an edge.
+    /// For triangles of at most two pixels a side: a bit for each with a sample inside or on an
+    /// edge.
     #[inline(always)]
     fn holds_sample(&self, [a, b, c]: &CornerLanes, is_back: u32, min: [i32x8; 2]) -> u32 {
         let mut holds = 0;
         let p = [a, b, c];
-        // An edge function is positive inside where the area is negative: `E = (p.y - q.y) dx + (q.x - p.x) dy`, negated.
+        // An edge function is positive inside where the area is negative: `E = (p.y - q.y) dx +
+        // (q.x - p.x) dy`, negated.
         let slopes: [[i32x8; 2]; 3] = std::array::from_fn(|i| {
             let (p, q) = (p[i], p[(i + 1) % 3]);
             [q[1] - p[1], p[0] - q[0]]
@@ -91,7 +95,10 @@ impl Culler {
             for [x, y] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
                 let at = |i: usize| edges[i] + ((slopes[i][0] * x + slopes[i][1] * y) << 8_u32);
                 let (front, back) = ((at(0), at(1), at(2)), (-at(0), -at(1), -at(2)));
-                let is_outside = [(front.0 | front.1 | front.2).to_bitmask(), (back.0 | back.1 | back.2).to_bitmask()];
+                let is_outside = [
+                    (front.0 | front.1 | front.2).to_bitmask(),
+                    (back.0 | back.1 | back.2).to_bitmask(),
+                ];
                 holds |= (!is_outside[0] & !is_back) | (!is_outside[1] & is_back);
             }
         }

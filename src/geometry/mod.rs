@@ -1,13 +1,14 @@
 //! Model space to screen triangles: project, cull, clip, snap.
 //!
-//! In: a validated [`Scene`]. Out: [`ScreenTriangle`]s in the order of meshes and their triangles, whatever the number
-//! of threads. View space is `(x, y, w)`: `w` is the distance along the view, and `(x, y) / w` lies on the screen, in
-//! pixels from the frame's middle, x to the right and y down. There is no far plane; depth is `1 / w`, larger is nearer.
+//! In: a validated [`Scene`]. Out: [`ScreenTriangle`]s in the order of meshes and their triangles,
+//! whatever the number of threads. View space is `(x, y, w)`: `w` is the distance along the view,
+//! and `(x, y) / w` lies on the screen, in pixels from the frame's middle, x to the right and y
+//! down. There is no far plane; depth is `1 / w`, larger is nearer.
 //!
-//! What is dropped: triangles that are not finite, seen from behind (if culled), outside the frame, without area after
-//! snapping, or too small to hold a sample. What reaches beyond the near plane or the guard band is clipped, and
-//! vertices on a shared edge come out the same for both of its triangles. Corners are snapped to 1/256 pixel, so that
-//! coverage is a matter of integers.
+//! What is dropped: triangles that are not finite, seen from behind (if culled), outside the frame,
+//! without area after snapping, or too small to hold a sample. What reaches beyond the near plane
+//! or the guard band is clipped, and vertices on a shared edge come out the same for both of its
+//! triangles. Corners are snapped to 1/256 pixel, so that coverage is a matter of integers.
 
 mod clip;
 mod cull;
@@ -26,10 +27,12 @@ use crate::settings::Settings;
 use projection::ScreenVertices;
 use rayon::prelude::*;
 
-/// Bits of a triangle's index that count within its chunk; a clipped triangle becomes at most six, see [`CHUNK`].
+/// Bits of a triangle's index that count within its chunk; a clipped triangle becomes at most six,
+/// see [`CHUNK`].
 const INDEX_BITS: u32 = 15;
-/// Triangles of the scene that one task sets up: small enough to balance, large enough to hide a task's cost, and at
-/// most `2^INDEX_BITS / 6`, so that indices fit even if every triangle is clipped into six.
+/// Triangles of the scene that one task sets up: small enough to balance, large enough to hide a
+/// task's cost, and at most `2^INDEX_BITS / 6`, so that indices fit even if every triangle is
+/// clipped into six.
 const CHUNK: usize = 4096;
 /// Vertices that one task projects.
 const VERTEX_CHUNK: usize = 8192;
@@ -86,7 +89,13 @@ impl Geometry {
             while start < range.end {
                 let end = range.end.min(first_triangles[mesh + 1]);
                 let local = start - first_triangles[mesh]..end - first_triangles[mesh];
-                setup.set_up(mesh, local, &scene.meshes[mesh].triangles, &vertices[mesh], triangles);
+                setup.set_up(
+                    mesh,
+                    local,
+                    &scene.meshes[mesh].triangles,
+                    &vertices[mesh],
+                    triangles,
+                );
                 (start, mesh) = (end, mesh + 1);
             }
         });
@@ -98,13 +107,18 @@ impl Geometry {
         self.vertices.par_iter_mut().zip(&scene.meshes).for_each(|(vertices, mesh)| {
             vertices.view.resize(mesh.positions.len(), [0.0; 3]);
             vertices.snapped.resize(mesh.positions.len(), [0; 2]);
-            let chunks = vertices.view.par_chunks_mut(VERTEX_CHUNK).zip(vertices.snapped.par_chunks_mut(VERTEX_CHUNK));
-            mesh.positions.par_chunks(VERTEX_CHUNK).zip(chunks).for_each(|(positions, (view, snapped))| {
-                let chunks = view.chunks_mut(8).zip(snapped.chunks_mut(8));
-                for (positions, (view, snapped)) in positions.chunks(8).zip(chunks) {
-                    projection.vertices(positions, view, snapped);
-                }
-            });
+            let chunks = vertices
+                .view
+                .par_chunks_mut(VERTEX_CHUNK)
+                .zip(vertices.snapped.par_chunks_mut(VERTEX_CHUNK));
+            mesh.positions.par_chunks(VERTEX_CHUNK).zip(chunks).for_each(
+                |(positions, (view, snapped))| {
+                    let chunks = view.chunks_mut(8).zip(snapped.chunks_mut(8));
+                    for (positions, (view, snapped)) in positions.chunks(8).zip(chunks) {
+                        projection.vertices(positions, view, snapped);
+                    }
+                },
+            );
         });
     }
 

@@ -1,19 +1,21 @@
 //! Attributes of a triangle as linear functions on the screen.
 //!
-//! With the corners' view-space rows `p_i = (x_i, y_i, w_i)`, an attribute `a` that is linear on the triangle has
-//! `(a / w)(X, Y) = c . (X, Y, 1)` where `c . p_i = a_i` (Olano and Greer 1997). So `c = (a_0 n_0 + a_1 n_1 + a_2 n_2) / det`
-//! with `n_0 = p_1 x p_2` and its like, `det = p_0 . n_0`. No division by `w`: corners behind the eye are as good as
-//! others, and clipped pieces share their triangle's functions.
+//! With the corners' view-space rows `p_i = (x_i, y_i, w_i)`, an attribute `a` that is linear on
+//! the triangle has `(a / w)(X, Y) = c . (X, Y, 1)` where `c . p_i = a_i` (Olano and Greer 1997).
+//! So `c = (a_0 n_0 + a_1 n_1 + a_2 n_2) / det` with `n_0 = p_1 x p_2` and its like, `det = p_0 .
+//! n_0`. No division by `w`: corners behind the eye are as good as others, and clipped pieces share
+//! their triangle's functions.
 
 use crate::simd::f64x8;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// A linear function on the screen: `value = c[0] * x + c[1] * y + c[2]`, x to the right and y down, in pixels; the
-/// centre of the first pixel lies at (0.5, 0.5).
+/// A linear function on the screen: `value = c[0] * x + c[1] * y + c[2]`, x to the right and y
+/// down, in pixels; the centre of the first pixel lies at (0.5, 0.5).
 pub type Plane = [f32; 3];
 
-/// A slope of 1/w, in units of its largest value per pixel, from which a triangle counts as seen edge on: a snapping
-/// step of 1/256 pixel would then change 1/w by a quarter, and the function says nothing about the snapped triangle.
+/// A slope of 1/w, in units of its largest value per pixel, from which a triangle counts as seen
+/// edge on: a snapping step of 1/256 pixel would then change 1/w by a quarter, and the function
+/// says nothing about the snapped triangle.
 const EDGE_ON: f64 = 64.0;
 
 /// What turns the values at a triangle's corners into a [`Plane`].
@@ -25,8 +27,8 @@ pub struct ScreenBasis {
 }
 
 impl ScreenBasis {
-    /// The basis of a triangle from its corners in view space; `center` is the frame's middle in pixels. A triangle seen
-    /// edge on takes the values of its farthest corner everywhere.
+    /// The basis of a triangle from its corners in view space; `center` is the frame's middle in
+    /// pixels. A triangle seen edge on takes the values of its farthest corner everywhere.
     #[must_use]
     #[inline]
     pub fn new(view: [[f64; 3]; 3], center: [f64; 2]) -> Self {
@@ -74,12 +76,15 @@ impl BasisLanes {
     pub(crate) fn new(view: [[f64x8; 3]; 3], center: [f64; 2]) -> Self {
         let rows = rows(view, f64x8::ONE);
         let mut basis = Self { rows, center: center.map(f64x8::splat) };
-        let (near, slope) = (view[0][2].fast_min(view[1][2]).fast_min(view[2][2]), slope(&rows, f64x8::abs));
+        let (near, slope) =
+            (view[0][2].fast_min(view[1][2]).fast_min(view[2][2]), slope(&rows, f64x8::abs));
         let is_edge_on = near.simd_gt(f64x8::ZERO) & (slope * near).simd_gt(f64x8::splat(EDGE_ON));
         let is_bounded = slope.simd_le(f64x8::splat(f64::from(f32::MAX)));
         let special = is_edge_on.to_bitmask() | (!is_bounded.to_bitmask() & 0xff);
         if special != 0 {
-            (0..8).filter(|lane| special >> lane & 1 != 0).for_each(|lane| basis.set_lane(lane, &view, center));
+            (0..8)
+                .filter(|lane| special >> lane & 1 != 0)
+                .for_each(|lane| basis.set_lane(lane, &view, center));
         }
         basis
     }
@@ -106,7 +111,10 @@ impl BasisLanes {
 }
 
 /// A number or lanes of numbers.
-trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {}
+trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+}
 
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>> Number for T {}
 

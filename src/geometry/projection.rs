@@ -1,8 +1,9 @@
 //! World space to view space to the snapped screen.
 //!
-//! `x = focal (P - eye).right`, `y = -focal (P - eye).up`, `w = (P - eye).forward`; on the screen, in pixels from the
-//! upper left corner, `(x / w + width / 2, y / w + height / 2)`. Divided and snapped in f64: f32 would lose sub-pixel
-//! bits beyond 32768 pixels, where guard-band vertices lie.
+//! `x = focal (P - eye).right`, `y = -focal (P - eye).up`, `w = (P - eye).forward`; on the screen,
+//! in pixels from the upper left corner, `(x / w + width / 2, y / w + height / 2)`. Divided and
+//! snapped in f64: f32 would lose sub-pixel bits beyond 32768 pixels, where guard-band vertices
+//! lie.
 
 use crate::scene::Camera;
 use crate::settings::Settings;
@@ -12,10 +13,12 @@ use glam::Vec3;
 /// Fractional bits of snapped coordinates: 1/256 pixel, what GPUs use.
 pub const SUBPIXEL_BITS: u32 = 8;
 const SCALE: f64 = (1_u32 << SUBPIXEL_BITS) as f64;
-/// Half the side of the guard band in pixels around the frame's middle. Frames are at most 32768 wide, so what is
-/// clipped there is out of sight, and products of snapped differences stay far inside 64 bits.
+/// Half the side of the guard band in pixels around the frame's middle. Frames are at most 32768
+/// wide, so what is clipped there is out of sight, and products of snapped differences stay far
+/// inside 64 bits.
 pub(super) const GUARD: f64 = 65536.0;
-/// Marks a vertex that must not be used without clipping: before the near plane, beyond the guard band or not finite.
+/// Marks a vertex that must not be used without clipping: before the near plane, beyond the guard
+/// band or not finite.
 pub(super) const UNSNAPPED: [i32; 2] = [i32::MIN; 2];
 /// Added to an f64 below 2^51, leaves it rounded to a whole number, ties to even, in the low bits.
 const ROUNDED: f64 = 6_755_399_441_055_744.0;
@@ -63,27 +66,38 @@ impl Projection {
 
     /// Up to eight vertices from their world positions.
     #[inline(always)]
-    pub(super) fn vertices(&self, positions: &[Vec3], view: &mut [[f32; 3]], snapped: &mut [[i32; 2]]) {
+    pub(super) fn vertices(
+        &self,
+        positions: &[Vec3],
+        view: &mut [[f32; 3]],
+        snapped: &mut [[i32; 2]],
+    ) {
         let mut d = [[0.0_f32; 8]; 3];
         for (lane, position) in positions.iter().enumerate() {
             (d[0][lane], d[1][lane], d[2][lane]) = (position.x, position.y, position.z);
         }
         let d: [f32x8; 3] = std::array::from_fn(|i| f32x8::new(d[i]) - self.eye[i]);
         let [x, y, w] = self.axes.map(|axis| d[0] * axis.x + d[1] * axis.y + d[2] * axis.z);
-        // A power of two: the product is exact, so that the clipper, in f64, agrees on who is inside.
+        // A power of two: the product is exact, so that the clipper, in f64, agrees on who is
+        // inside.
         let bound = w * GUARD as f32;
-        let is_inside =
-            w.simd_ge(f32x8::splat(self.near)) & x.abs().simd_le(bound) & y.abs().simd_le(bound) & bound.is_finite();
+        let is_inside = w.simd_ge(f32x8::splat(self.near))
+            & x.abs().simd_le(bound)
+            & y.abs().simd_le(bound)
+            & bound.is_finite();
         let is_inside = crate::simd::mask(is_inside).to_array();
         let [x, y, w] = [x, y, w].map(f32x8::to_array);
         let wide = |lanes: [f32; 8]| f64x8::new(lanes.map(f64::from));
         let places = [(x, self.center[0]), (y, self.center[1])].map(|(c, center)| {
-            let screen = (wide(c) / wide(w)).fast_max(f64x8::splat(-GUARD)).fast_min(f64x8::splat(GUARD)) + center;
+            let screen =
+                (wide(c) / wide(w)).fast_max(f64x8::splat(-GUARD)).fast_min(f64x8::splat(GUARD))
+                    + center;
             (screen * SCALE + ROUNDED).to_array().map(|rounded| rounded.to_bits() as i32)
         });
         for (lane, (view, snapped)) in view.iter_mut().zip(snapped).enumerate() {
             *view = [x[lane], y[lane], w[lane]];
-            *snapped = if is_inside[lane] != 0 { places.map(|place| place[lane]) } else { UNSNAPPED };
+            *snapped =
+                if is_inside[lane] != 0 { places.map(|place| place[lane]) } else { UNSNAPPED };
         }
     }
 

@@ -1,4 +1,5 @@
-//! Triangle set-up, eight triangles at a time: cull, clip where needed, and make [`ScreenTriangle`]s.
+//! Triangle set-up, eight triangles at a time: cull, clip where needed, and make
+//! [`ScreenTriangle`]s.
 //!
 //! Every screen triangle leaves with a positive area, y down: clockwise as displayed.
 
@@ -46,8 +47,10 @@ impl<'a> Setup<'a> {
             let corners = snapped_corners(indices, &vertices.snapped);
             let lanes = corners.map(|corner| corner.map(i32x8::new));
             let kept = self.culler.keep(&lanes);
-            let is_unsnapped = unsnapped(&corners[0][0]) | unsnapped(&corners[1][0]) | unsnapped(&corners[2][0]);
-            let mut left = (kept.lanes & !is_unsnapped) | (is_unsnapped & ((1 << indices.len()) - 1));
+            let is_unsnapped =
+                unsnapped(&corners[0][0]) | unsnapped(&corners[1][0]) | unsnapped(&corners[2][0]);
+            let mut left =
+                (kept.lanes & !is_unsnapped) | (is_unsnapped & ((1 << indices.len()) - 1));
             while left != 0 {
                 let lane = left.trailing_zeros() as usize;
                 left &= left - 1;
@@ -69,7 +72,12 @@ impl<'a> Setup<'a> {
     }
 
     #[cold]
-    fn set_up_clipped(&self, view: [[f32; 3]; 3], [mesh, triangle]: [u32; 2], out: &mut Vec<ScreenTriangle>) {
+    fn set_up_clipped(
+        &self,
+        view: [[f32; 3]; 3],
+        [mesh, triangle]: [u32; 2],
+        out: &mut Vec<ScreenTriangle>,
+    ) {
         if !view.iter().flatten().all(|v| v.is_finite()) {
             return;
         }
@@ -89,11 +97,18 @@ impl<'a> Setup<'a> {
         }
         let lanes = corners.map(|corner| corner.map(i32x8::new));
         let kept = self.culler.keep(&lanes);
-        // Snapping may turn a sliver over; it then lies within the other pieces and must not count again.
+        // Snapping may turn a sliver over; it then lies within the other pieces and must not count
+        // again.
         let is_back = twice_area(&lanes).to_array().iter().sum::<f64>() > 0.0;
-        for piece in (0..6).filter(|piece| kept.lanes >> piece & 1 != 0 && (kept.is_back >> piece & 1 != 0) == is_back)
-        {
-            out.push(ScreenTriangle { corners: oriented(&corners, piece, kept.is_back), depth, mesh, triangle });
+        for piece in (0..6).filter(|piece| {
+            kept.lanes >> piece & 1 != 0 && (kept.is_back >> piece & 1 != 0) == is_back
+        }) {
+            out.push(ScreenTriangle {
+                corners: oriented(&corners, piece, kept.is_back),
+                depth,
+                mesh,
+                triangle,
+            });
         }
     }
 }

@@ -1,9 +1,10 @@
 //! A cut through the relief along the view: polygon, ray, running horizon, visible lengths.
 //!
-//! The line runs through the place where the ray meets the polygon, in the direction of the displacement `D`. A texel row
-//! across crosses it at `s_i`, where the relief is `d_i` deep, 0 to 1, and is seen over `p_i = s_i - d_i |D|`. With the entry
-//! and exit of the ellipse of formula (2), the running horizon is `M_i = max(M_(i-1), min(p_i, exit))`, and the visible
-//! length of the relief between two rows is `M_i - M_(i-1)`. All in texels of the level along the line.
+//! The line runs through the place where the ray meets the polygon, in the direction of the
+//! displacement `D`. A texel row across crosses it at `s_i`, where the relief is `d_i` deep, 0 to
+//! 1, and is seen over `p_i = s_i - d_i |D|`. With the entry and exit of the ellipse of formula
+//! (2), the running horizon is `M_i = max(M_(i-1), min(p_i, exit))`, and the visible length of the
+//! relief between two rows is `M_i - M_(i-1)`. All in texels of the level along the line.
 
 use super::ground::QuadPixel;
 use crate::footprint::Ellipse;
@@ -16,7 +17,8 @@ const FLAT: f64 = 1.0 / 64.0;
 /// Most rows of a cut before the entry and behind the exit, as a part of the way between.
 const MARGIN: f64 = 0.15;
 
-/// The relief along the view ray. Lengths are texels along the line, 0 where the ray meets the polygon.
+/// The relief along the view ray. Lengths are texels along the line, 0 where the ray meets the
+/// polygon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut {
     /// Unit vector along the line, in texels.
@@ -52,7 +54,12 @@ pub struct CutPoint {
 
 impl Cut {
     /// The cut of a pixel through a level.
-    pub(super) fn new(surface: &Surface, seen: &QuadPixel, level: usize, max_anisotropy: f32) -> Self {
+    pub(super) fn new(
+        surface: &Surface,
+        seen: &QuadPixel,
+        level: usize,
+        max_anisotropy: f32,
+    ) -> Self {
         let level = &surface.levels()[level];
         let texels = level.texels_per_repeat();
         let ellipse = Ellipse::new(&seen.footprint(&FootprintRule::FLAT), texels, Formulas::Meant);
@@ -78,10 +85,15 @@ impl Cut {
 }
 
 impl Cut {
-    /// How many of the rows between the ellipse's entry and the row that closes the horizon are seen, and how many there are.
+    /// How many of the rows between the ellipse's entry and the row that closes the horizon are
+    /// seen, and how many there are.
     pub fn num_seen(&self) -> [usize; 2] {
         let [entry, exit] = self.ellipse;
-        let last = self.points.iter().position(|point| point.horizon >= exit).unwrap_or(self.points.len() - 1);
+        let last = self
+            .points
+            .iter()
+            .position(|point| point.horizon >= exit)
+            .unwrap_or(self.points.len() - 1);
         let first = self.points.iter().position(|point| point.along > entry).unwrap_or(0);
         let walked = &self.points[first.min(last)..=last];
         [walked.iter().filter(|point| point.visible > 0.0).count(), walked.len()]
@@ -123,7 +135,8 @@ impl<'a> Line<'a> {
         let margin = MARGIN * (2.0 * half + self.displacement) + 2.0 * per_row;
         let toward = self.direction[self.axis].signum();
         let row_of = |s: f64| toward * self.start[self.axis] + s / per_row;
-        let rows = row_of(-half - margin).floor() as i64..=row_of(half + self.displacement + margin).ceil() as i64;
+        let rows = row_of(-half - margin).floor() as i64
+            ..=row_of(half + self.displacement + margin).ceil() as i64;
         let mut horizon = -half;
         let at = |row: i64| self.crossing((toward * row as f64) as i64);
         rows.map(|row| {

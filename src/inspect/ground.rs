@@ -44,13 +44,8 @@ impl Ground {
         let planes = AttributePlanes::new(&geometry, triangle, scene, &settings);
         let mesh = triangle.mesh as usize;
         let material = scene.meshes[mesh].material;
-        (!scene.meshes[mesh].tex_coords.is_empty() || scene.materials[material].surface.is_none()).then_some(Self {
-            mesh,
-            triangle: triangle.triangle as usize,
-            material,
-            pixel,
-            planes,
-        })
+        (!scene.meshes[mesh].tex_coords.is_empty() || scene.materials[material].surface.is_none())
+            .then_some(Self { mesh, triangle: triangle.triangle as usize, material, pixel, planes })
     }
 
     /// The pixel over the relief of `field`, or over the bare polygon.
@@ -65,20 +60,26 @@ impl Ground {
 
 impl<'a> Quads<'a> {
     /// Quads with the texture coordinates `uv` and view rays `view`.
-    pub(super) fn new(uv: [PixelLanes; 2], view: [PixelLanes; 3], field: Option<&'a HeightField>) -> Self {
+    pub(super) fn new(
+        uv: [PixelLanes; 2],
+        view: [PixelLanes; 3],
+        field: Option<&'a HeightField>,
+    ) -> Self {
         Self { uv, view, field }
     }
 
     /// Its pixels with their rays.
     pub(super) fn pixels(self) -> [QuadPixel<'a>; 8] {
         let uv = self.uv.map(finite);
-        let displacement = displacement(&self.view, self.field.map_or(0.0, |field| field.relief_depth));
+        let displacement =
+            displacement(&self.view, self.field.map_or(0.0, |field| field.relief_depth));
         let depth = self.field.map_or(PixelLanes::ZERO, |field| march(field, &uv, &displacement));
         let hit = [0, 1].map(|i| uv[i] + displacement[i] * depth);
         std::array::from_fn(|lane| {
             let at = |lanes: &[PixelLanes; 2]| lanes.map(|lanes| lanes.as_array()[lane]);
             let hit_depth = depth.as_array()[lane];
-            let ray = Ray { base: at(&uv), displacement: at(&displacement), hit_depth, hit: at(&hit) };
+            let ray =
+                Ray { base: at(&uv), displacement: at(&displacement), hit_depth, hit: at(&hit) };
             QuadPixel { quads: self, lane, ray }
         })
     }
@@ -103,7 +104,8 @@ impl QuadPixel<'_> {
     }
 }
 
-/// The nearest triangle at the centre of a pixel; of equally near ones the first, as in the rasterizer.
+/// The nearest triangle at the centre of a pixel; of equally near ones the first, as in the
+/// rasterizer.
 fn nearest(geometry: &Geometry, pixel: [u32; 2]) -> Option<&ScreenTriangle> {
     let [x, y] = pixel.map(|c| c as i32);
     let rect = Rect { min: [x, y], max: [x + 1, y + 1] };

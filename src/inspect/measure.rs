@@ -21,13 +21,16 @@ use std::sync::atomic::{AtomicU32, Ordering};
 pub enum View {
     /// How many triangles the pixel's samples see, and the share of the samples that see one.
     Coverage,
-    /// The mip level that the filter reads, 0 the finest, and the share of the colour that far-field tables give.
+    /// The mip level that the filter reads, 0 the finest, and the share of the colour that
+    /// far-field tables give.
     Mip,
     /// Texels of the full texture in the pixel's ellipse of formula (1).
     Footprint,
-    /// The part of the ellipse's texels that the relief leaves visible, 0 to 1, and how many texels there are.
+    /// The part of the ellipse's texels that the relief leaves visible, 0 to 1, and how many texels
+    /// there are.
     Visible,
-    /// The part of the texel rows along the view that make the floating horizon rise, 0 to 1, and how many rows there are.
+    /// The part of the texel rows along the view that make the floating horizon rise, 0 to 1, and
+    /// how many rows there are.
     Horizon,
     /// Distance along the view to the relief, in world units.
     Depth,
@@ -48,7 +51,8 @@ pub struct Measured {
     pub pixels: Vec<Option<[f32; 3]>>,
 }
 
-/// Measures a frame. All views but [`View::Coverage`] look through the pixels' centres, whatever `msaa` says.
+/// Measures a frame. All views but [`View::Coverage`] look through the pixels' centres, whatever
+/// `msaa` says.
 ///
 /// # Errors
 /// Names a part of the scene or a setting that is not valid.
@@ -66,11 +70,21 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
     let settings = Settings { msaa, lighting, ..settings.clone() };
     let pool = Pool::default();
     let shader = Shader::new(scene, &settings, &prepared, &pool);
-    let probe = Probe { settings: &settings, view, is_lit, asks_levels, prepared: &prepared, shader: &shader };
+    let probe = Probe {
+        settings: &settings,
+        view,
+        is_lit,
+        asks_levels,
+        prepared: &prepared,
+        shader: &shader,
+    };
     let pixels = Pixels::new(&settings);
     let shade = |block: &QuadBlock, colors: &mut Vec<[PixelLanes; 3]>| {
         for (pair, values) in block.pairs().zip(probe.values(block)) {
-            values.into_iter().enumerate().for_each(|(lane, value)| pixels.set(&pair, lane, view, value));
+            values
+                .into_iter()
+                .enumerate()
+                .for_each(|(lane, value)| pixels.set(&pair, lane, view, value));
         }
         colors.resize(colors.len() + block.num_pairs(), [PixelLanes::ZERO; 3]);
     };
@@ -89,7 +103,10 @@ struct Pixels {
 impl Pixels {
     fn new(settings: &Settings) -> Self {
         let num = settings.width as usize * settings.height as usize;
-        Self { width: settings.width as usize, values: (0..num).map(|_| Default::default()).collect() }
+        Self {
+            width: settings.width as usize,
+            values: (0..num).map(|_| Default::default()).collect(),
+        }
     }
 
     fn set(&self, pair: &QuadPair, lane: usize, view: View, value: Option<[f32; 3]>) {
@@ -157,19 +174,29 @@ impl Probe<'_> {
             .map(|(pair, (footprints, choices))| {
                 let pixels = Quads::new(pair.uv, pair.view(), prepared.field()).pixels();
                 each_covered(&pair, |lane| {
-                    let seen = Seen { pixel: pixels[lane], footprint: footprints.lane(lane), choice: choices[lane] };
+                    let seen = Seen {
+                        pixel: pixels[lane],
+                        footprint: footprints.lane(lane),
+                        choice: choices[lane],
+                    };
                     self.value(&pair, prepared, &seen)
                 })
             })
             .collect()
     }
 
-    /// Pixels of a material without a texture. How many triangles there are is counted, not measured.
+    /// Pixels of a material without a texture. How many triangles there are is counted, not
+    /// measured.
     fn of_plain(&self, pair: &QuadPair) -> [Option<[f32; 3]>; 8] {
         match self.view {
             View::Depth => each_covered(pair, |lane| [distance(pair, lane), 0.0, 0.0]),
             View::Normal => each_covered(pair, |lane| world(pair, lane, Texel::UP)),
-            View::Coverage | View::Mip | View::Footprint | View::Visible | View::Horizon | View::Uv => [None; 8],
+            View::Coverage
+            | View::Mip
+            | View::Footprint
+            | View::Visible
+            | View::Horizon
+            | View::Uv => [None; 8],
         }
     }
 
@@ -185,16 +212,23 @@ impl Probe<'_> {
             }
             View::Visible => {
                 let sets = Sets::new(prepared, pixel, filter);
-                [sets.visible.len() as f32 / sets.all.len().max(1) as f32, sets.all.len() as f32, 0.0]
+                [
+                    sets.visible.len() as f32 / sets.all.len().max(1) as f32,
+                    sets.all.len() as f32,
+                    0.0,
+                ]
             }
             View::Horizon => {
-                let [seen, all] = Cut::new(surface, pixel, choice.level, filter.max_anisotropy()).num_seen();
+                let [seen, all] =
+                    Cut::new(surface, pixel, choice.level, filter.max_anisotropy()).num_seen();
                 [seen as f32 / all.max(1) as f32, all as f32, 0.0]
             }
             View::Depth => {
-                // The ray sinks by gamma repeats on its way from the eye, and on by the depth of the hit.
+                // The ray sinks by gamma repeats on its way from the eye, and on by the depth of
+                // the hit.
                 let [.., gamma] = pair.view().map(|lanes| lanes.as_array()[pixel.lane].abs());
-                let sunk = prepared.field().map_or(0.0, |field| field.relief_depth * pixel.ray.hit_depth);
+                let sunk =
+                    prepared.field().map_or(0.0, |field| field.relief_depth * pixel.ray.hit_depth);
                 [distance(pair, pixel.lane) * (1.0 + sunk / gamma.max(f32::MIN_POSITIVE)), 0.0, 0.0]
             }
             View::Normal => {
@@ -207,7 +241,10 @@ impl Probe<'_> {
     }
 }
 
-fn each_covered(pair: &QuadPair, mut value: impl FnMut(usize) -> [f32; 3]) -> [Option<[f32; 3]>; 8] {
+fn each_covered(
+    pair: &QuadPair,
+    mut value: impl FnMut(usize) -> [f32; 3],
+) -> [Option<[f32; 3]>; 8] {
     let mut values = [None; 8];
     pair.covered().for_each(|lane| values[lane] = Some(value(lane)));
     values
@@ -226,6 +263,7 @@ fn world(pair: &QuadPair, lane: usize, [x, y, z]: [f32; 3]) -> [f32; 3] {
     let at = |lanes: &[PixelLanes; 3]| Vec3::from(lanes.map(|lanes| lanes.as_array()[lane]));
     let normal = at(&lit.normal).normalize_or(Vec3::Z);
     let normal = if pair.view()[2].as_array()[lane] < 0.0 { -normal } else { normal };
-    let [u, v] = [at(&lit.tangent_u), at(&lit.tangent_v)].map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
+    let [u, v] = [at(&lit.tangent_u), at(&lit.tangent_v)]
+        .map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
     (u * x + v * y + normal * z).normalize_or(normal).to_array()
 }

@@ -1,9 +1,10 @@
 //! What one pixel sees, and why: the numbers behind the paper's figures.
 //!
-//! [`pixel`] gathers for a pixel of a frame: where its view ray meets polygon and relief ([`Ray`]), both ellipses in both
-//! readings of the paper's formulas ([`Reading`]), the sets of texels ([`Sets`]), and a cut through the relief along the
-//! view ([`Cut`]). [`Figure`] places the eye on the built-in scene so that one of the paper's figures is seen.
-//! [`measure`] gives one such number for every pixel of a frame. Plain data: nothing here draws.
+//! [`pixel`] gathers for a pixel of a frame: where its view ray meets polygon and relief ([`Ray`]),
+//! both ellipses in both readings of the paper's formulas ([`Reading`]), the sets of texels
+//! ([`Sets`]), and a cut through the relief along the view ([`Cut`]). [`Figure`] places the eye on
+//! the built-in scene so that one of the paper's figures is seen. [`measure`] gives one such number
+//! for every pixel of a frame. Plain data: nothing here draws.
 //!
 //! ```
 //! use basrelief::inspect::{self, Figure};
@@ -61,22 +62,30 @@ pub struct Inspection {
     prepared: Prepared,
 }
 
-/// Inspects the surface at the centre of a pixel (column, row) of the frame that the settings describe.
+/// Inspects the surface at the centre of a pixel (column, row) of the frame that the settings
+/// describe.
 ///
 /// # Errors
-/// Names a scene or setting that is not valid, and a pixel outside the frame or without a textured surface.
+/// Names a scene or setting that is not valid, and a pixel outside the frame or without a textured
+/// surface.
 pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Inspection> {
     scene.validate()?;
     settings.validate()?;
     let [x, y] = pixel;
     let name = || format!("pixel {x},{y}");
     if x >= settings.width || y >= settings.height {
-        return Err(Error::scene(name(), format!("is outside the frame of {}x{}", settings.width, settings.height)));
+        return Err(Error::scene(
+            name(),
+            format!("is outside the frame of {}x{}", settings.width, settings.height),
+        ));
     }
-    let ground = Ground::at(scene, settings, pixel).ok_or_else(|| Error::scene(name(), "sees no surface"))?;
+    let ground = Ground::at(scene, settings, pixel)
+        .ok_or_else(|| Error::scene(name(), "sees no surface"))?;
     let material = &scene.materials[ground.material];
-    let surface =
-        material.surface.clone().ok_or_else(|| Error::scene(name(), "sees a surface without texture coordinates"))?;
+    let surface = material
+        .surface
+        .clone()
+        .ok_or_else(|| Error::scene(name(), "sees a surface without texture coordinates"))?;
     let prepared = Prepared::new(surface);
     let prepared = if settings.parallax { prepared } else { prepared.without_relief() };
     let seen = ground.pixel(prepared.field());
@@ -89,7 +98,12 @@ pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Insp
         material: ground.material,
         relief_depth: prepared.field().map_or(0.0, |field| field.relief_depth),
         ray: seen.ray,
-        readings: readings::both(prepared.surface(), sets.level, &seen, settings.filter.max_anisotropy()),
+        readings: readings::both(
+            prepared.surface(),
+            sets.level,
+            &seen,
+            settings.filter.max_anisotropy(),
+        ),
         sets,
         cut,
         prepared,
@@ -97,7 +111,8 @@ pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Insp
 }
 
 impl Inspection {
-    /// Linear red, green and blue, 0 to 1, of a texel of the level of [`Sets`], at a column and row of the endless pattern.
+    /// Linear red, green and blue, 0 to 1, of a texel of the level of [`Sets`], at a column and row
+    /// of the endless pattern.
     pub fn color(&self, [x, y]: [i32; 2]) -> [f32; 3] {
         let surface = self.prepared.surface();
         let scale = surface.color_scale().min(1.0) / FULL_F32;

@@ -25,12 +25,13 @@ pub struct Projected {
     pub center: [f32; 2],
     /// Formula (1) in those texels.
     pub conic: Ellipse,
-    /// The same with the reconstruction kernel added and its anisotropy bounded: whose texels are averaged.
+    /// The same with the reconstruction kernel added and its anisotropy bounded: whose texels are
+    /// averaged.
     pub widened: Ellipse,
     /// Area of the widened ellipse in texels.
     pub area: f32,
-    /// Half axes of the widened ellipse in texels: shorter, longer. Of a printed ellipse, as if its F were that of its A,
-    /// B and C.
+    /// Half axes of the widened ellipse in texels: shorter, longer. Of a printed ellipse, as if its
+    /// F were that of its A, B and C.
     pub half_axes: [f32; 2],
 }
 
@@ -50,14 +51,20 @@ pub struct Reading {
 }
 
 /// The formulas as meant and as printed, in texels of a level.
-pub(super) fn both(surface: &Surface, level: usize, seen: &QuadPixel, max_anisotropy: f32) -> [Reading; 2] {
+pub(super) fn both(
+    surface: &Surface,
+    level: usize,
+    seen: &QuadPixel,
+    max_anisotropy: f32,
+) -> [Reading; 2] {
     let level = &surface.levels()[level];
     let corner = |lane: usize| {
         let [uv, offset] = seen.corner(lane);
         Corner { uv, offset }
     };
     [Formulas::Meant, Formulas::Printed].map(|formulas| {
-        let projected = |derivatives| projected(level, seen, (derivatives, formulas), max_anisotropy);
+        let projected =
+            |derivatives| projected(level, seen, (derivatives, formulas), max_anisotropy);
         Reading {
             formulas,
             row: [seen.lane & !1, seen.lane | 1].map(corner),
@@ -76,7 +83,8 @@ fn projected(
 ) -> Projected {
     // Formula (2) stands around the place on the polygon, formula (3) around the hit.
     let is_traced = derivatives == Derivatives::Relief;
-    let footprint = seen.footprint(&FootprintRule { derivatives, formulas, max_stretch: 0.0, is_traced });
+    let footprint =
+        seen.footprint(&FootprintRule { derivatives, formulas, max_stretch: 0.0, is_traced });
     let conic = Ellipse::new(&footprint, level.texels_per_repeat(), formulas);
     let widened = conic.widened(max_anisotropy, formulas);
     Projected {

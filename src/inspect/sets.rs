@@ -8,7 +8,8 @@ use crate::footprint::levels::EllipseRule;
 use crate::settings::{Filter, Visibility, Visible};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The texels of a pixel's ellipse. A texel is its column and row in the endless pattern of a mip level.
+/// The texels of a pixel's ellipse. A texel is its column and row in the endless pattern of a mip
+/// level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sets {
     /// The mip level that the filter reads.
@@ -28,16 +29,17 @@ pub struct Sets {
     pub hidden: Vec<[i32; 2]>,
     /// Visible texels that the scan of rows from both ends does not reach.
     pub skipped: Vec<[i32; 2]>,
-    /// For every hidden texel the visible one that is seen in its place: where its ray to the eye leads in the end.
+    /// For every hidden texel the visible one that is seen in its place: where its ray to the eye
+    /// leads in the end.
     pub covered_by: Vec<[[i32; 2]; 2]>,
-    /// Texels that would count more than once if hidden ones counted those seen in their place and no buffer kept what has
-    /// been counted, and how many times they would.
+    /// Texels that would count more than once if hidden ones counted those seen in their place and
+    /// no buffer kept what has been counted, and how many times they would.
     pub counted_twice: Vec<([i32; 2], u32)>,
 }
 
 impl Sets {
-    /// The sets of a pixel for a filter: those of the ellipse of `Ewa` or `Visible`, on the level that the filter reads; any
-    /// other filter is shown the paper's.
+    /// The sets of a pixel for a filter: those of the ellipse of `Ewa` or `Visible`, on the level
+    /// that the filter reads; any other filter is shown the paper's.
     pub(super) fn new(prepared: &Prepared, seen: &QuadPixel, filter: &Filter) -> Self {
         let shown = match filter {
             Filter::Ewa(_) | Filter::Visible(_) => *filter,
@@ -53,7 +55,8 @@ impl Sets {
         let number = shown.level(prepared, &footprint).level;
         let level = &prepared.surface().levels()[number];
         let formulas = rule.formulas;
-        let ellipse = EllipseRule { formulas, texel_budget: 0, max_anisotropy: shown.max_anisotropy() };
+        let ellipse =
+            EllipseRule { formulas, texel_budget: 0, max_anisotropy: shown.max_anisotropy() };
         let ellipse = ellipse.ellipse(&footprint, level);
         let mut set = TexelSet::default();
         set.fill_ellipse(&ellipse, level.in_texels(footprint.hit));
@@ -68,10 +71,13 @@ impl Sets {
         };
         let (exact, two_ended) = (kept(Visibility::Exact), kept(Visibility::TwoEnded));
         let all: Vec<[i32; 2]> = set.iter().collect();
-        let (visible, hidden): (Vec<_>, Vec<_>) = all.iter().partition(|&texel| exact.contains(texel));
+        let (visible, hidden): (Vec<_>, Vec<_>) =
+            all.iter().partition(|&texel| exact.contains(texel));
         let covered_by: Vec<_> = occlusion
             .iter()
-            .flat_map(|occlusion| hidden.iter().map(|&texel| [texel, seen_instead(occlusion, texel)]))
+            .flat_map(|occlusion| {
+                hidden.iter().map(|&texel| [texel, seen_instead(occlusion, texel)])
+            })
             .collect();
         Self {
             level: number,

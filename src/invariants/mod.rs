@@ -1,7 +1,9 @@
-//! What must hold of the filters for any texture, footprint and view: for property tests and fuzzing, yours included.
+//! What must hold of the filters for any texture, footprint and view: for property tests and
+//! fuzzing, yours included.
 //!
-//! Each function checks one property for one pixel and says in one line what broke. A [`Footprint`] is a pixel in
-//! texture space; [`Footprint::bounded`] makes one of any numbers, NaN and infinity included, as the renderer does.
+//! Each function checks one property for one pixel and says in one line what broke. A [`Footprint`]
+//! is a pixel in texture space; [`Footprint::bounded`] makes one of any numbers, NaN and infinity
+//! included, as the renderer does.
 //!
 //! To fuzz your own textures and settings:
 //!
@@ -35,7 +37,9 @@ pub use crate::footprint::Footprint;
 pub use check::Checked;
 pub use frames::{fan_is_hit_once, frame_is_finite, march_finds_first_hit};
 pub use means::{flat_relief_hides_nothing, linear_in_texture, same_for_same_ellipse};
-pub use pixel::{anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels, work_is_bounded};
+pub use pixel::{
+    anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels, work_is_bounded,
+};
 pub use sets::visible_sets;
 pub use symmetry::{mirrored, same_when_scaled, shifted, turned};
 pub use weights::{horizon_weights, records_are_visible};

@@ -1,7 +1,9 @@
-//! A texture shifted, turned or mirrored with the view gives the same colour; relief and view scaled together hide the same.
+//! A texture shifted, turned or mirrored with the view gives the same colour; relief and view
+//! scaled together hide the same.
 //!
-//! Sums run over the same texels in another order, so colours agree up to rounding; but rounding also decides which texels
-//! on the very edge of an ellipse belong to it, so the callers state the tolerance.
+//! Sums run over the same texels in another order, so colours agree up to rounding; but rounding
+//! also decides which texels on the very edge of an ellipse belong to it, so the callers state the
+//! tolerance.
 
 use super::check::{Checked, difference, ensure};
 use super::pixel::filtered;
@@ -14,25 +16,42 @@ use crate::texture::{ColorImage, HeightImage, Surface, SurfaceMaps};
 use std::collections::BTreeSet;
 
 /// The same pixel of two textures.
-fn agree(maps: [SurfaceMaps; 2], pixels: [&Footprint; 2], filter: &Filter, tolerance: f32) -> Checked {
+fn agree(
+    maps: [SurfaceMaps; 2],
+    pixels: [&Footprint; 2],
+    filter: &Filter,
+    tolerance: f32,
+) -> Checked {
     let [a, b] = maps.map(|maps| Surface::new(maps).map_err(|e| e.to_string()));
     let [a, b] = [filtered(&a?, pixels[0], filter), filtered(&b?, pixels[1], filter)];
     let error = difference(a, b);
     ensure(error <= tolerance, || format!("{a:?} became {b:?}, {error} apart"))
 }
 
-/// The maps with every texel moved: the new texel at `(x, y)` of a map of the new size is the old one at `from(x, y)`.
-fn moved(maps: &SurfaceMaps, is_turned: bool, from: impl Fn([u32; 2], [u32; 2]) -> [u32; 2]) -> SurfaceMaps {
+/// The maps with every texel moved: the new texel at `(x, y)` of a map of the new size is the old
+/// one at `from(x, y)`.
+fn moved(
+    maps: &SurfaceMaps,
+    is_turned: bool,
+    from: impl Fn([u32; 2], [u32; 2]) -> [u32; 2],
+) -> SurfaceMaps {
     let places = |w: u32, h: u32| {
         let [new_w, new_h] = if is_turned { [h, w] } else { [w, h] };
         let index = |[x, y]: [u32; 2]| (y * w + x) as usize;
-        let order: Vec<usize> =
-            (0..new_h).flat_map(|y| (0..new_w).map(move |x| [x, y])).map(|place| index(from(place, [w, h]))).collect();
+        let order: Vec<usize> = (0..new_h)
+            .flat_map(|y| (0..new_w).map(move |x| [x, y]))
+            .map(|place| index(from(place, [w, h])))
+            .collect();
         (new_w, new_h, order)
     };
     let albedo = maps.albedo.as_ref().map(|image| {
         let (width, height, order) = places(image.width, image.height);
-        ColorImage { width, height, texels: order.iter().map(|&i| image.texels[i]).collect(), scale: image.scale }
+        ColorImage {
+            width,
+            height,
+            texels: order.iter().map(|&i| image.texels[i]).collect(),
+            scale: image.scale,
+        }
     });
     let heights = maps.height.as_ref().map(|image| {
         let (width, height, order) = places(image.width, image.height);
@@ -47,13 +66,20 @@ fn size(maps: &SurfaceMaps) -> [u32; 2] {
     albedo.or(maps.height.as_ref().map(|m| [m.width, m.height])).unwrap_or([1, 1])
 }
 
-/// A repeating texture shifted by whole texels with the pixel gives the same colour. Coarser levels shift by whole texels
-/// too only where `by` is a multiple of theirs and the size a power of two.
+/// A repeating texture shifted by whole texels with the pixel gives the same colour. Coarser levels
+/// shift by whole texels too only where `by` is a multiple of theirs and the size a power of two.
 ///
 /// # Errors
 /// Says what broke.
-pub fn shifted(maps: &SurfaceMaps, pixel: &Footprint, filter: &Filter, by: [u32; 2], tolerance: f32) -> Checked {
-    let back = |[x, y]: [u32; 2], [w, h]: [u32; 2]| [(x + w - by[0] % w) % w, (y + h - by[1] % h) % h];
+pub fn shifted(
+    maps: &SurfaceMaps,
+    pixel: &Footprint,
+    filter: &Filter,
+    by: [u32; 2],
+    tolerance: f32,
+) -> Checked {
+    let back =
+        |[x, y]: [u32; 2], [w, h]: [u32; 2]| [(x + w - by[0] % w) % w, (y + h - by[1] % h) % h];
     let mut there = *pixel;
     let [w, h] = size(maps);
     there.base[0] += by[0] as f32 / w as f32;
@@ -94,13 +120,18 @@ pub fn mirrored(maps: &SurfaceMaps, pixel: &Footprint, filter: &Filter, toleranc
     agree([maps.clone(), mirrored], [pixel, &there], filter, tolerance)
 }
 
-/// Relief of half the height under a view of twice the slope hides the same texels, up to ties, and the horizon gives the
-/// same colour. Heights must be 2 more than a multiple of 4, so that half of their depth is stored exactly, and maps of
-/// one size.
+/// Relief of half the height under a view of twice the slope hides the same texels, up to ties, and
+/// the horizon gives the same colour. Heights must be 2 more than a multiple of 4, so that half of
+/// their depth is stored exactly, and maps of one size.
 ///
 /// # Errors
 /// Says what broke.
-pub fn same_when_scaled(maps: &SurfaceMaps, pixel: &Footprint, horizon: &Horizon, tolerance: f32) -> Checked {
+pub fn same_when_scaled(
+    maps: &SurfaceMaps,
+    pixel: &Footprint,
+    horizon: &Horizon,
+    tolerance: f32,
+) -> Checked {
     let mut shallow = maps.clone();
     if let Some(heights) = &mut shallow.height {
         heights.texels.iter_mut().for_each(|h| *h = 2 * (32767 - (32767 - *h / 2) / 2));
@@ -109,7 +140,8 @@ pub fn same_when_scaled(maps: &SurfaceMaps, pixel: &Footprint, horizon: &Horizon
     slanted.displacement = slanted.displacement.map(|d| d * 2.0);
     let visible = |maps: &SurfaceMaps, pixel: &Footprint| {
         let surface = Surface::new(maps.clone()).map_err(|e| e.to_string())?;
-        let (ellipse, [center, displacement]) = on_base_level(&surface, pixel, horizon.max_anisotropy);
+        let (ellipse, [center, displacement]) =
+            on_base_level(&surface, pixel, horizon.max_anisotropy);
         let mut set = TexelSet::default();
         set.fill_ellipse(&ellipse, center);
         remove_hidden(&mut set, &Occlusion::new(surface.base(), displacement), Visibility::Exact);
@@ -117,7 +149,8 @@ pub fn same_when_scaled(maps: &SurfaceMaps, pixel: &Footprint, horizon: &Horizon
         Ok::<_, String>((set.iter().collect::<BTreeSet<_>>(), margin))
     };
     let ((deep, margin), (flat, _)) = (visible(maps, pixel)?, visible(&shallow, &slanted)?);
-    let differs = deep.symmetric_difference(&flat).find(|texel| margin(**texel).abs() > 2.0 * RAY_TIE);
+    let differs =
+        deep.symmetric_difference(&flat).find(|texel| margin(**texel).abs() > 2.0 * RAY_TIE);
     ensure(differs.is_none(), || format!("{differs:?} is visible in one of the two"))?;
     agree([maps.clone(), shallow], [pixel, &slanted], &Filter::Horizon(*horizon), tolerance)
 }

@@ -4,14 +4,15 @@
 //! colour = albedo (ambient + sum I max(0, n.l)) + specular sum I f (n.h)^s     h = normalize(l + v), where n.l > 0
 //! ```
 //!
-//! Where a pixel holds many normals, `n` is their mean, and the highlight is widened by how much shorter than one it is:
-//! `s' = f' s`, `f' = |n| / (|n| + s (1 - |n|))`, with the lobe's height scaled by `f = (1 + s') / (1 + s)` (Toksvig 2005,
-//! "Mipmapping normal maps").
+//! Where a pixel holds many normals, `n` is their mean, and the highlight is widened by how much
+//! shorter than one it is: `s' = f' s`, `f' = |n| / (|n| + s (1 - |n|))`, with the lobe's height
+//! scaled by `f = (1 + s') / (1 + s)` (Toksvig 2005, "Mipmapping normal maps").
 
 use crate::scene::{Light, Material};
 use glam::Vec3;
 
-/// The lights as one place of a surface sees them, in the frame of its texture: x along u, y along v, z off the surface.
+/// The lights as one place of a surface sees them, in the frame of its texture: x along u, y along
+/// v, z off the surface.
 #[derive(Clone, Debug, Default)]
 pub struct LocalLights {
     /// Light from everywhere.
@@ -43,7 +44,9 @@ impl LocalLights {
         let local = |w: Vec3| Vec3::new(u.dot(w), v.dot(w), normal.dot(w));
         let lights = lights.iter().map(|light| {
             let (to_light, intensity) = match *light {
-                Light::Directional { to_light, intensity } => (to_light.normalize_or_zero(), intensity),
+                Light::Directional { to_light, intensity } => {
+                    (to_light.normalize_or_zero(), intensity)
+                }
                 Light::Point { position, intensity } => {
                     let way = position - point.position;
                     (way.normalize_or_zero(), intensity / way.length_squared().max(1e-12))
@@ -56,9 +59,9 @@ impl LocalLights {
 
     /// What an albedo of 1 is multiplied with under a unit normal.
     pub fn diffuse(&self, normal: Vec3) -> Vec3 {
-        self.lights
-            .iter()
-            .fold(self.ambient, |sum, (to_light, intensity)| sum + *intensity * normal.dot(*to_light).max(0.0))
+        self.lights.iter().fold(self.ambient, |sum, (to_light, intensity)| {
+            sum + *intensity * normal.dot(*to_light).max(0.0)
+        })
     }
 
     /// The highlights of a mean normal.
@@ -79,14 +82,16 @@ impl LocalLights {
     }
 }
 
-/// `x` to the power `s`, for `x` up to 1 and `s` of 0 or more, by exact operations alone: the same on every machine.
+/// `x` to the power `s`, for `x` up to 1 and `s` of 0 or more, by exact operations alone: the same
+/// on every machine.
 pub fn power(x: f32, s: f32) -> f32 {
     if x <= 0.0 {
         return if s == 0.0 { 1.0 } else { 0.0 };
     }
     // x = m 2^e with m within 0.75 to 1.5; ln m by the series of atanh.
     let bits = f64::from(x).to_bits();
-    let (mut exponent, mut m) = ((bits >> 52) as i64 - 1023, f64::from_bits(bits & ((1 << 52) - 1) | 1023 << 52));
+    let (mut exponent, mut m) =
+        ((bits >> 52) as i64 - 1023, f64::from_bits(bits & ((1 << 52) - 1) | 1023 << 52));
     if m > 1.5 {
         (exponent, m) = (exponent + 1, m * 0.5);
     }

@@ -20,7 +20,8 @@ use std::path::Path;
 /// A scene and what its reader should know of how it was read.
 #[derive(Clone, Debug, Default)]
 pub struct Loaded {
-    /// The scene. Its camera frames the bounding box; one light shines over the viewer's left shoulder.
+    /// The scene. Its camera frames the bounding box; one light shines over the viewer's left
+    /// shoulder.
     pub scene: Scene,
     /// What was chosen, such as which image serves as the height map: one line each.
     pub choices: Vec<String>,
@@ -30,9 +31,9 @@ pub struct Loaded {
 
 /// Reads an OBJ file with its MTL files and images.
 ///
-/// A missing MTL or texture that a file names is a warning, and the plain colour is drawn. Meshes without texture
-/// coordinates are drawn in their plain colour too. Normals are made where the file has none, see
-/// [`LoadOptions::crease_angle`].
+/// A missing MTL or texture that a file names is a warning, and the plain colour is drawn. Meshes
+/// without texture coordinates are drawn in their plain colour too. Normals are made where the file
+/// has none, see [`LoadOptions::crease_angle`].
 ///
 /// # Errors
 /// Names the file, and the line where one is wrong, or the option or limit that refuses it.
@@ -44,7 +45,11 @@ pub fn load(obj: &Path, options: &LoadOptions) -> Result<Loaded> {
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_reporting(obj: &Path, options: &LoadOptions, report: &(dyn Fn(LoadStage) + Sync)) -> Result<Loaded> {
+pub fn load_reporting(
+    obj: &Path,
+    options: &LoadOptions,
+    report: &(dyn Fn(LoadStage) + Sync),
+) -> Result<Loaded> {
     open_regular(obj)?;
     load_from(&ObjFile(obj), &Folder::of(obj, options.allow_outside), options, report)
 }
@@ -74,9 +79,8 @@ pub(super) fn load_from(
     let MtlFiles { mut materials, mut warnings, .. } = mtl.into_inner();
     let meshes = models::meshes(models, materials.len());
     if meshes.iter().any(models::has_bad_number) {
-        return Err(
-            locate::bad_number(source).unwrap_or_else(|| Error::file(source.path(), "has numbers out of range"))
-        );
+        return Err(locate::bad_number(source)
+            .unwrap_or_else(|| Error::file(source.path(), "has numbers out of range")));
     }
     models::remark_placements(&materials, &mut warnings);
     let meshes = models::finish(meshes, &materials, options.crease_angle)
@@ -87,7 +91,8 @@ pub(super) fn load_from(
     check_names(options, &materials)?;
     let plans = plans(&meshes, &materials, folder, options)?;
     warnings.extend(plans.warnings);
-    let surfaces = surfaces::build(&plans.plans.iter().flatten().cloned().collect(), options, report)?;
+    let surfaces =
+        surfaces::build(&plans.plans.iter().flatten().cloned().collect(), options, report)?;
     let materials = materials.iter().zip(&plans.plans).map(|(material, plan)| {
         let surface = plan.as_ref().and_then(|plan| surfaces.get(plan)).cloned();
         let own = options.materials.get(&material.name).cloned().unwrap_or_default();
@@ -104,7 +109,9 @@ pub(super) fn load_from(
 /// Refuses options for a material that is not there, which would be lost in silence.
 fn check_names(options: &LoadOptions, materials: &[MtlMaterial]) -> Result<()> {
     let is_there = |name: &String| materials.iter().any(|material| material.name == *name);
-    let Some(missing) = options.materials.keys().find(|name| !is_there(name)) else { return Ok(()) };
+    let Some(missing) = options.materials.keys().find(|name| !is_there(name)) else {
+        return Ok(());
+    };
     let names: Vec<&str> = materials.iter().map(|material| material.name.as_str()).collect();
     let reason = format!("is not there; the model's materials are {}", names.join(", "));
     Err(Error::scene(format!("material {missing}"), reason))
@@ -118,8 +125,14 @@ struct Plans {
     warnings: Vec<String>,
 }
 
-fn plans(meshes: &[Mesh], materials: &[MtlMaterial], folder: &Folder, options: &LoadOptions) -> Result<Plans> {
-    let textured: BTreeSet<usize> = meshes.iter().filter(|m| !m.tex_coords.is_empty()).map(|m| m.material).collect();
+fn plans(
+    meshes: &[Mesh],
+    materials: &[MtlMaterial],
+    folder: &Folder,
+    options: &LoadOptions,
+) -> Result<Plans> {
+    let textured: BTreeSet<usize> =
+        meshes.iter().filter(|m| !m.tex_coords.is_empty()).map(|m| m.material).collect();
     let used: Vec<&MtlMaterial> = textured.iter().map(|&i| &materials[i]).collect();
     let mut planner = Planner::new(options, folder, &used)?;
     let mut plans = vec![None; materials.len()];
@@ -131,11 +144,13 @@ fn plans(meshes: &[Mesh], materials: &[MtlMaterial], folder: &Folder, options: &
 }
 
 fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
-    // Beyond these bounds a colour or exponent is a mistake in the file that need not stop the picture.
+    // Beyond these bounds a colour or exponent is a mistake in the file that need not stop the
+    // picture.
     let color = |c: [f32; 3]| Vec3::from_array(c).clamp(Vec3::ZERO, Vec3::splat(1e6));
     let exponent = |exponent: f32| exponent.clamp(0.0, 1e4);
     let fallback = Material::default();
-    // Exporters write `Ns 0` for a surface without a highlight; taken by the letter it is one of no end.
+    // Exporters write `Ns 0` for a surface without a highlight; taken by the letter it is one of no
+    // end.
     let specular = from.specular.filter(|_| from.shininess != Some(0.0));
     Material {
         name: from.name.clone(),
@@ -149,7 +164,8 @@ fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
 /// A camera that sees all of the scene, and light from over its left shoulder.
 fn frame(scene: &mut Scene, aspect: f32) {
     let points = || scene.meshes.iter().flat_map(|mesh| &mesh.positions);
-    let (min, max) = points().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| (min.min(*p), max.max(*p)));
+    let (min, max) = points()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| (min.min(*p), max.max(*p)));
     scene.camera = Camera::framing(min, max, aspect);
     let [right, up, forward] = scene.camera.axes();
     let to_light = up * 0.8 - right * 0.6 - forward * 0.6;

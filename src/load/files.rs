@@ -1,4 +1,5 @@
-//! Which files a scene may read: regular files inside the scene's folder unless the caller allows more.
+//! Which files a scene may read: regular files inside the scene's folder unless the caller allows
+//! more.
 
 use super::lines::Place;
 use crate::error::Result;
@@ -24,7 +25,8 @@ impl Folder {
         Self { root: None, allow_outside: false }
     }
 
-    /// The absolute path without links of the file `name` that the line `at` asks for; `None` when it is missing.
+    /// The absolute path without links of the file `name` that the line `at` asks for; `None` when
+    /// it is missing.
     ///
     /// # Errors
     /// Says why what lies outside the folder, or is no regular file, is refused.
@@ -32,7 +34,10 @@ impl Folder {
         let Some(root) = &self.root else { return Ok(None) };
         let Ok(real) = fs::canonicalize(parent(at.path).join(name)) else { return Ok(None) };
         if !self.allow_outside && !real.starts_with(root) {
-            return Err(at.refuse_limit(format!("'{name}' lies outside the scene's folder"), "allow_outside"));
+            return Err(at.refuse_limit(
+                format!("'{name}' lies outside the scene's folder"),
+                "allow_outside",
+            ));
         }
         if !real.is_file() {
             return Err(at.refuse(format!("'{name}' is not a regular file")));

@@ -1,15 +1,17 @@
 //! Hands a text file to tobj line by line, each cleaned first.
 //!
-//! Input: any reader. Output: a reader of cleaned lines that knows which line of the file it is at, so that whatever
-//! tobj refuses can be named without reading the file twice. Lines that end in a backslash are joined, byte-order
-//! marks and bytes that are not UTF-8 are replaced, and no line is read past [`MAX_LINE_BYTES`].
+//! Input: any reader. Output: a reader of cleaned lines that knows which line of the file it is at,
+//! so that whatever tobj refuses can be named without reading the file twice. Lines that end in a
+//! backslash are joined, byte-order marks and bytes that are not UTF-8 are replaced, and no line is
+//! read past [`MAX_LINE_BYTES`].
 
 use crate::error::{Error, Result};
 use std::borrow::Cow;
 use std::io::{self, BufRead, Read};
 use std::path::{Path, PathBuf};
 
-/// Longest line that is read: a polygon of a million corners fits, a binary file without line ends does not fill memory.
+/// Longest line that is read: a polygon of a million corners fits, a binary file without line ends
+/// does not fill memory.
 const MAX_LINE_BYTES: usize = 32 << 20;
 
 /// Where the OBJ's text comes from; it is read again only to find the line of an error.
@@ -20,7 +22,8 @@ pub(super) trait Source {
 
 /// What a cleaner does with a line.
 pub(super) trait Clean {
-    /// Appends what tobj shall see of `text` to `out`, each line ended by `\n`; nothing leaves the line out.
+    /// Appends what tobj shall see of `text` to `out`, each line ended by `\n`; nothing leaves the
+    /// line out.
     fn clean(&mut self, text: &str, at: Place<'_>, out: &mut String) -> Result<()>;
 }
 
@@ -34,12 +37,22 @@ pub(super) struct Place<'a> {
 impl Place<'_> {
     /// A refusal of this line.
     pub(super) fn refuse(self, reason: impl ToString) -> Error {
-        Error::File { path: self.path.into(), line: Some(self.line), reason: reason.to_string(), source: None }
+        Error::File {
+            path: self.path.into(),
+            line: Some(self.line),
+            reason: reason.to_string(),
+            source: None,
+        }
     }
 
     /// A refusal of this line, which asks for more than `option` allows.
     pub(super) fn refuse_limit(self, reason: impl ToString, option: &'static str) -> Error {
-        Error::Limit { path: self.path.into(), line: Some(self.line), reason: reason.to_string(), option }
+        Error::Limit {
+            path: self.path.into(),
+            line: Some(self.line),
+            reason: reason.to_string(),
+            option,
+        }
     }
 
     /// A one-line remark about this line.
@@ -65,7 +78,16 @@ pub(super) struct CleanLines<R, C> {
 impl<R: BufRead, C: Clean> CleanLines<R, C> {
     pub(super) fn new(inner: R, path: &Path, cleaner: C) -> Self {
         let (raw, clean) = (Vec::new(), String::new());
-        Self { inner, cleaner, path: path.into(), num_read: 0, raw, clean, consumed: 0, failure: None }
+        Self {
+            inner,
+            cleaner,
+            path: path.into(),
+            num_read: 0,
+            raw,
+            clean,
+            consumed: 0,
+            failure: None,
+        }
     }
 
     /// The line that was handed out last.
@@ -95,13 +117,19 @@ impl<R: BufRead, C: Clean> CleanLines<R, C> {
             self.num_read += 1;
         }
         // Checked first, which is many times faster than to look for what must be replaced.
-        let text = std::str::from_utf8(&self.raw).map_or_else(|_| String::from_utf8_lossy(&self.raw), Cow::Borrowed);
+        let text = std::str::from_utf8(&self.raw)
+            .map_or_else(|_| String::from_utf8_lossy(&self.raw), Cow::Borrowed);
         let text = text.trim_start_matches('\u{feff}').trim();
-        self.cleaner.clean(text, Place { path: &self.path, line: self.num_read }, &mut self.clean)?;
+        self.cleaner.clean(
+            text,
+            Place { path: &self.path, line: self.num_read },
+            &mut self.clean,
+        )?;
         Ok(true)
     }
 
-    /// Appends one line of the file to `raw`, without its end; false when there was nothing to read.
+    /// Appends one line of the file to `raw`, without its end; false when there was nothing to
+    /// read.
     fn read_physical_line(&mut self) -> Result<bool> {
         let room = MAX_LINE_BYTES.saturating_sub(self.raw.len());
         let read = (&mut self.inner).take(room as u64).read_until(b'\n', &mut self.raw);

@@ -1,4 +1,5 @@
-//! The loaders on bytes in memory, for fuzzing: what a hostile file reaches, without the file system.
+//! The loaders on bytes in memory, for fuzzing: what a hostile file reaches, without the file
+//! system.
 
 use super::assemble::{Loaded, load_from};
 use super::files::Folder;
@@ -30,7 +31,8 @@ pub fn load_mtl_bytes(bytes: &[u8]) -> Result<Vec<String>> {
     Ok(files.warnings)
 }
 
-/// Decodes an image from memory and makes every kind of map from it; a TGA when it has no other format's signature.
+/// Decodes an image from memory and makes every kind of map from it; a TGA when it has no other
+/// format's signature.
 ///
 /// # Errors
 /// Says what is wrong with the image, or that it exceeds 1024 texels a side or 16 MiB.
@@ -38,7 +40,12 @@ pub fn load_mtl_bytes(bytes: &[u8]) -> Result<Vec<String>> {
 pub fn load_image_bytes(bytes: &[u8]) -> Result<()> {
     let limits = ImageLimits { side: 1024, texels: u64::MAX, bytes: 16 << 20 };
     let samples = decode::samples_bytes(bytes, Path::new("image.tga"), limits)?;
-    let _ = (samples.color(), samples.height(None, [0.0, 1.0]), samples.normal(1.0, 1.0), samples.is_gray());
+    let _ = (
+        samples.color(),
+        samples.height(None, [0.0, 1.0]),
+        samples.normal(1.0, 1.0),
+        samples.is_gray(),
+    );
     Ok(())
 }
 

@@ -1,8 +1,9 @@
 //! OBJ, MTL and images to a validated scene.
 //!
-//! `lines` cleans the text for tobj, `obj` and `mtl` read it, `plan` decides which image serves as what, `decode` and
-//! `surfaces` make the textures, and `assemble` puts the scene together. Files are not trusted: every limit is a field of
-//! [`LoadOptions`], and a panic of a decoder becomes an error.
+//! `lines` cleans the text for tobj, `obj` and `mtl` read it, `plan` decides which image serves as
+//! what, `decode` and `surfaces` make the textures, and `assemble` puts the scene together. Files
+//! are not trusted: every limit is a field of [`LoadOptions`], and a panic of a decoder becomes an
+//! error.
 
 mod assemble;
 mod files;

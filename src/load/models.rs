@@ -1,4 +1,5 @@
-//! tobj's models to meshes with texture coordinates as the materials scale them, normals and tangents.
+//! tobj's models to meshes with texture coordinates as the materials scale them, normals and
+//! tangents.
 
 use super::mtl::{MtlMaterial, TextureRef};
 use super::normals;
@@ -13,10 +14,14 @@ pub(super) fn meshes(models: Vec<tobj::Model>, num_materials: usize) -> Vec<Mesh
 
 fn mesh(model: tobj::Model, num_materials: usize) -> Mesh {
     let tobj::Model { mesh, name } = model;
-    let positions: Vec<Vec3> = mesh.positions.as_chunks().0.iter().map(|p| Vec3::from_array(*p)).collect();
-    let mut tex_coords: Vec<Vec2> = mesh.texcoords.as_chunks().0.iter().map(|t| Vec2::from_array(*t)).collect();
-    let mut normals: Vec<Vec3> = mesh.normals.as_chunks().0.iter().map(|n| Vec3::from_array(*n)).collect();
-    // Models are split where their corners change in what they name; what differs nevertheless cannot be assigned.
+    let positions: Vec<Vec3> =
+        mesh.positions.as_chunks().0.iter().map(|p| Vec3::from_array(*p)).collect();
+    let mut tex_coords: Vec<Vec2> =
+        mesh.texcoords.as_chunks().0.iter().map(|t| Vec2::from_array(*t)).collect();
+    let mut normals: Vec<Vec3> =
+        mesh.normals.as_chunks().0.iter().map(|n| Vec3::from_array(*n)).collect();
+    // Models are split where their corners change in what they name; what differs nevertheless
+    // cannot be assigned.
     if tex_coords.len() != positions.len() {
         tex_coords.clear();
     }
@@ -40,9 +45,14 @@ pub(super) fn has_bad_number(mesh: &Mesh) -> bool {
 ///
 /// # Errors
 /// Says which mesh's texture coordinates leave their range.
-pub(super) fn finish(mut meshes: Vec<Mesh>, materials: &[MtlMaterial], crease_angle: f32) -> Result<Vec<Mesh>, String> {
+pub(super) fn finish(
+    mut meshes: Vec<Mesh>,
+    materials: &[MtlMaterial],
+    crease_angle: f32,
+) -> Result<Vec<Mesh>, String> {
     meshes.par_iter_mut().for_each(|mesh| {
-        let (scale, offset) = materials.get(mesh.material).map_or((Vec2::ONE, Vec2::ZERO), placement);
+        let (scale, offset) =
+            materials.get(mesh.material).map_or((Vec2::ONE, Vec2::ZERO), placement);
         if (scale, offset) != (Vec2::ONE, Vec2::ZERO) {
             mesh.tex_coords.iter_mut().for_each(|t| *t = *t * scale + offset);
         }
@@ -67,10 +77,13 @@ fn unit_or_zero(normal: Vec3) -> Vec3 {
     (normal / normal.abs().max_element()).normalize_or_zero()
 }
 
-/// Scale and shift of a material's texture coordinates: those of its colour map, else of its first other map.
+/// Scale and shift of a material's texture coordinates: those of its colour map, else of its first
+/// other map.
 fn placement(material: &MtlMaterial) -> (Vec2, Vec2) {
     let first = textures(material).next();
-    first.map_or((Vec2::ONE, Vec2::ZERO), |map| (map.texture.scale.into(), map.texture.offset.into()))
+    first.map_or((Vec2::ONE, Vec2::ZERO), |map| {
+        (map.texture.scale.into(), map.texture.offset.into())
+    })
 }
 
 fn textures(material: &MtlMaterial) -> impl Iterator<Item = &TextureRef> {
@@ -84,8 +97,13 @@ pub(super) fn remark_placements(materials: &[MtlMaterial], warnings: &mut Vec<St
             continue;
         };
         for map in textures(material).skip(1) {
-            if (map.texture.scale, map.texture.offset) != (first.texture.scale, first.texture.offset) {
-                let text = format_args!("-s and -o of {} give way to those of {}", map.keyword, first.keyword);
+            if (map.texture.scale, map.texture.offset)
+                != (first.texture.scale, first.texture.offset)
+            {
+                let text = format_args!(
+                    "-s and -o of {} give way to those of {}",
+                    map.keyword, first.keyword
+                );
                 warnings.push(map.place().remark(text));
             }
         }

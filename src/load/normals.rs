@@ -1,9 +1,10 @@
 //! Normals for meshes whose files have none.
 //!
-//! A file holds a vertex once for each texture coordinate that meets there, and a model once for each material. Where
-//! vertices have the same position they are therefore one *point* of the surface here, and both sides of a seam of the
-//! texture get the same normal. An edge is smooth if the faces that share it meet at no more than the crease angle.
-//! Around a point, faces that hang together by smooth edges share one normal; a vertex is split where they do not.
+//! A file holds a vertex once for each texture coordinate that meets there, and a model once for
+//! each material. Where vertices have the same position they are therefore one *point* of the
+//! surface here, and both sides of a seam of the texture get the same normal. An edge is smooth if
+//! the faces that share it meet at no more than the crease angle. Around a point, faces that hang
+//! together by smooth edges share one normal; a vertex is split where they do not.
 //!
 //! ```text
 //!      \ A /        A, B and C meet at smooth edges: one normal, their mean.
@@ -18,11 +19,11 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
-/// An edge of more faces than this is no part of a surface, and stays sharp: comparing each face with each would take
-/// too long in a file that is made to do harm.
+/// An edge of more faces than this is no part of a surface, and stays sharp: comparing each face
+/// with each would take too long in a file that is made to do harm.
 const MOST_FACES: usize = 64;
-/// Cosines are compared with this tolerance, since faces that meet at exactly the crease angle are smooth, and positions
-/// are rounded to f32.
+/// Cosines are compared with this tolerance, since faces that meet at exactly the crease angle are
+/// smooth, and positions are rounded to f32.
 const TOLERANCE: f64 = 1e-6;
 
 /// Makes the normals that are zero in `meshes`, all together; vertices may be split.
@@ -30,7 +31,8 @@ const TOLERANCE: f64 = 1e-6;
 /// # Errors
 /// Says so when there are more corners than fit 32 bits.
 pub(super) fn make(meshes: &mut [Mesh], crease_degrees: f32) -> Result<(), String> {
-    let mut lacking: Vec<&mut Mesh> = meshes.iter_mut().filter(|mesh| mesh.normals.contains(&Vec3::ZERO)).collect();
+    let mut lacking: Vec<&mut Mesh> =
+        meshes.iter_mut().filter(|mesh| mesh.normals.contains(&Vec3::ZERO)).collect();
     let num_corners: usize = lacking.iter().map(|mesh| mesh.triangles.len() * 3).sum();
     let num_vertices: usize = lacking.iter().map(|mesh| mesh.positions.len()).sum();
     if num_corners.max(num_vertices) > u32::MAX as usize {
@@ -46,7 +48,8 @@ pub(super) fn make(meshes: &mut [Mesh], crease_degrees: f32) -> Result<(), Strin
     Ok(())
 }
 
-/// Gives the vertices of `mesh` that lack a normal those of their corners; a vertex whose corners differ is split.
+/// Gives the vertices of `mesh` that lack a normal those of their corners; a vertex whose corners
+/// differ is split.
 fn set_normals(mesh: &mut Mesh, of_corners: &[Vec3]) {
     let is_missing: Vec<bool> = mesh.normals.iter().map(|normal| *normal == Vec3::ZERO).collect();
     let mut copies: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
@@ -59,18 +62,23 @@ fn set_normals(mesh: &mut Mesh, of_corners: &[Vec3]) {
             mesh.normals[vertex] = normal;
             continue;
         }
-        *corner = *copies.entry((*corner, normal.to_array().map(f32::to_bits))).or_insert_with(|| {
-            mesh.positions.push(mesh.positions[vertex]);
-            mesh.tex_coords.extend(mesh.tex_coords.get(vertex).copied());
-            mesh.normals.push(normal);
-            mesh.normals.len() as u32 - 1
-        });
+        *corner =
+            *copies.entry((*corner, normal.to_array().map(f32::to_bits))).or_insert_with(|| {
+                mesh.positions.push(mesh.positions[vertex]);
+                mesh.tex_coords.extend(mesh.tex_coords.get(vertex).copied());
+                mesh.normals.push(normal);
+                mesh.normals.len() as u32 - 1
+            });
     }
     // Vertices of no face, or of faces without area.
-    mesh.normals.iter_mut().filter(|normal| **normal == Vec3::ZERO).for_each(|normal| *normal = Vec3::Y);
+    mesh.normals
+        .iter_mut()
+        .filter(|normal| **normal == Vec3::ZERO)
+        .for_each(|normal| *normal = Vec3::Y);
 }
 
-/// The triangles of all meshes, with vertices counted through, and the point that each vertex lies at.
+/// The triangles of all meshes, with vertices counted through, and the point that each vertex lies
+/// at.
 struct Faces {
     positions: Vec<Vec3>,
     points: Vec<u32>,
@@ -96,7 +104,9 @@ impl Faces {
         for mesh in meshes {
             let first = positions.len() as u32;
             positions.extend(&mesh.positions);
-            triangles.extend(mesh.triangles.iter().map(|triangle| triangle.map(|vertex| first + vertex)));
+            triangles.extend(
+                mesh.triangles.iter().map(|triangle| triangle.map(|vertex| first + vertex)),
+            );
         }
         Self { points: points(&positions), positions, triangles }
     }
@@ -104,16 +114,24 @@ impl Faces {
     /// The normal of each corner; zero where a face has no area.
     fn normals(&self, crease_degrees: f32) -> Vec<Vec3> {
         let corners = self.triangles.as_flattened();
-        let mut by_point: Vec<(u32, u32)> =
-            corners.iter().zip(0..).map(|(&vertex, number)| (self.points[vertex as usize], number)).collect();
+        let mut by_point: Vec<(u32, u32)> = corners
+            .iter()
+            .zip(0..)
+            .map(|(&vertex, number)| (self.points[vertex as usize], number))
+            .collect();
         by_point.par_sort_unstable();
         let least_cos = f64::from(crease_degrees).to_radians().cos() - TOLERANCE;
-        let around_points = by_point.par_chunk_by(|a, b| a.0 == b.0).fold(Around::default, |mut around, at_point| {
-            around.corners.clear();
-            around.corners.extend(at_point.iter().filter_map(|&(_, number)| self.corner(number)));
-            around.add_normals(least_cos);
-            around
-        });
+        let around_points = by_point.par_chunk_by(|a, b| a.0 == b.0).fold(
+            Around::default,
+            |mut around, at_point| {
+                around.corners.clear();
+                around
+                    .corners
+                    .extend(at_point.iter().filter_map(|&(_, number)| self.corner(number)));
+                around.add_normals(least_cos);
+                around
+            },
+        );
         let found: Vec<Vec<(u32, Vec3)>> = around_points.map(|around| around.normals).collect();
         let mut normals = vec![Vec3::ZERO; corners.len()];
         found.into_iter().flatten().for_each(|(number, normal)| normals[number as usize] = normal);
@@ -186,7 +204,9 @@ impl Around {
     fn group_by_smooth_edges(&mut self, least_cos: f64) {
         let Self { corners, groups, edges, .. } = self;
         edges.clear();
-        edges.extend(corners.iter().enumerate().flat_map(|(i, corner)| corner.ends.map(|end| (end, i))));
+        edges.extend(
+            corners.iter().enumerate().flat_map(|(i, corner)| corner.ends.map(|end| (end, i))),
+        );
         edges.sort_unstable();
         groups.clear();
         groups.extend(0..corners.len());
@@ -203,7 +223,8 @@ impl Around {
     }
 }
 
-/// Follows `groups` to the first corner of a group, and shortens the way for those who follow it next.
+/// Follows `groups` to the first corner of a group, and shortens the way for those who follow it
+/// next.
 fn first_of_group(groups: &mut [usize], mut corner: usize) -> usize {
     while groups[corner] != corner {
         groups[corner] = groups[groups[corner]];
@@ -231,7 +252,8 @@ mod tests {
     use glam::Vec2;
 
     fn mesh(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
-        let (tex_coords, normals) = (vec![Vec2::ZERO; positions.len()], vec![Vec3::ZERO; positions.len()]);
+        let (tex_coords, normals) =
+            (vec![Vec2::ZERO; positions.len()], vec![Vec3::ZERO; positions.len()]);
         Mesh { positions, tex_coords, normals, triangles, ..Mesh::default() }
     }
 
@@ -240,7 +262,11 @@ mod tests {
         make(&mut meshes, crease_degrees).unwrap();
         let [made] = meshes;
         assert!(made.normals.iter().all(|normal| normal.is_normalized()));
-        assert!([made.normals.len(), made.tex_coords.len()].iter().all(|&num| num == made.positions.len()));
+        assert!(
+            [made.normals.len(), made.tex_coords.len()]
+                .iter()
+                .all(|&num| num == made.positions.len())
+        );
         made
     }
 
@@ -254,7 +280,8 @@ mod tests {
     fn cube() -> Mesh {
         let sign = |i: u32, bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
         let positions = (0..8).map(|i| Vec3::new(sign(i, 0), sign(i, 1), sign(i, 2))).collect();
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let quads =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         mesh(positions, quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect())
     }
 
@@ -265,7 +292,13 @@ mod tests {
             Vec3::new(angle.sin(), y, angle.cos())
         };
         let positions = (0..=num).flat_map(|i| [at(i, 0.0), at(i, 1.0)]).collect();
-        mesh(positions, (0..num).map(|i| 2 * i).flat_map(|i| [[i, i + 2, i + 1], [i + 2, i + 3, i + 1]]).collect())
+        mesh(
+            positions,
+            (0..num)
+                .map(|i| 2 * i)
+                .flat_map(|i| [[i, i + 2, i + 1], [i + 2, i + 3, i + 1]])
+                .collect(),
+        )
     }
 
     #[test]
@@ -275,14 +308,25 @@ mod tests {
             assert_eq!(made.positions.len(), 24, "crease at {crease}");
             for corners in corners(&made).as_chunks::<6>().0 {
                 let [first, ..] = corners.map(|[_, normal]| normal);
-                assert!(first.max_element() == 1.0 || first.min_element() == -1.0, "crease at {crease}: {first}");
-                assert!(corners.iter().all(|[position, normal]| *normal == first && position.dot(first) == 1.0));
+                assert!(
+                    first.max_element() == 1.0 || first.min_element() == -1.0,
+                    "crease at {crease}: {first}"
+                );
+                assert!(
+                    corners
+                        .iter()
+                        .all(|[position, normal]| *normal == first && position.dot(first) == 1.0)
+                );
             }
         }
         for crease in [90.0, 180.0] {
             let made = with_normals(&cube(), crease);
             assert_eq!(made.positions.len(), 8, "crease at {crease}");
-            assert!(corners(&made).iter().all(|[position, normal]| normal.abs_diff_eq(position.normalize(), 1e-6)));
+            assert!(
+                corners(&made)
+                    .iter()
+                    .all(|[position, normal]| normal.abs_diff_eq(position.normalize(), 1e-6))
+            );
         }
     }
 
@@ -294,7 +338,12 @@ mod tests {
             assert_eq!(made.positions.len(), 2 * num + 2, "{num} sides are smooth");
             assert_eq!(made.normals[..2], made.normals[2 * num..]);
             let outwards = |p: &Vec3| Vec3::new(p.x, 0.0, p.z);
-            assert!(made.positions.iter().zip(&made.normals).all(|(p, n)| n.abs_diff_eq(outwards(p), 1e-6)));
+            assert!(
+                made.positions
+                    .iter()
+                    .zip(&made.normals)
+                    .all(|(p, n)| n.abs_diff_eq(outwards(p), 1e-6))
+            );
         }
     }
 
@@ -322,7 +371,8 @@ mod tests {
             assert_ne!(num % 3, 0);
             let order: Vec<usize> = (0..num).map(|i| i * 3 % num).collect();
             let shuffled = order.iter().map(|&i| bumpy.triangles[i]).collect();
-            let found = corners(&with_normals(&Mesh { triangles: shuffled, ..bumpy.clone() }, crease));
+            let found =
+                corners(&with_normals(&Mesh { triangles: shuffled, ..bumpy.clone() }, crease));
             for (&i, found) in order.iter().zip(found.as_chunks::<3>().0) {
                 assert_eq!(found[..], expected[3 * i..3 * i + 3], "crease at {crease}");
             }
@@ -343,12 +393,18 @@ mod tests {
         // A sheet of two sides, smooth all over: the sides cancel each other.
         let sheet = mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2], [0, 2, 1]]);
         assert_eq!(
-            corners(&with_normals(&sheet, 180.0)).iter().map(|[_, normal]| normal.z).collect::<Vec<_>>(),
+            corners(&with_normals(&sheet, 180.0))
+                .iter()
+                .map(|[_, normal]| normal.z)
+                .collect::<Vec<_>>(),
             [1.0, 1.0, 1.0, -1.0, -1.0, -1.0]
         );
         // More faces on one edge than are compared.
         let fan = (0..500).map(|i| Vec3::new(1.0, i as f32, 500.0 - i as f32));
-        let fan = mesh([Vec3::ZERO, Vec3::X].into_iter().chain(fan).collect(), (2..502).map(|i| [0, 1, i]).collect());
+        let fan = mesh(
+            [Vec3::ZERO, Vec3::X].into_iter().chain(fan).collect(),
+            (2..502).map(|i| [0, 1, i]).collect(),
+        );
         with_normals(&fan, 180.0);
     }
 

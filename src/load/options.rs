@@ -27,7 +27,8 @@ pub enum NormalY {
     Down,
 }
 
-/// What the caller says of materials in place of their file. `None`, the default, leaves it to the file.
+/// What the caller says of materials in place of their file. `None`, the default, leaves it to the
+/// file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MaterialOptions {
     /// Colour map for materials with texture coordinates.
@@ -38,11 +39,13 @@ pub struct MaterialOptions {
     pub normal: Option<PathBuf>,
     /// Which end of the height map is high; `None`: white.
     pub height_sense: Option<HeightSense>,
-    /// Relief depth in texture repeats, 0 to 1; `None`: `-bm` of the height map in the MTL, else 0.05.
+    /// Relief depth in texture repeats, 0 to 1; `None`: `-bm` of the height map in the MTL, else
+    /// 0.05.
     pub relief_depth: Option<f32>,
     /// Where the normal map's green points; `None`: up.
     pub normal_y: Option<NormalY>,
-    /// What lies beyond a texture's edges; `None`: clamp where the MTL says `-clamp on`, else repeat.
+    /// What lies beyond a texture's edges; `None`: clamp where the MTL says `-clamp on`, else
+    /// repeat.
     pub wrap: Option<Wrap>,
     /// Diffuse colour, linear RGB, 0 to 1e6; `None`: `Kd`, else 1.
     pub diffuse: Option<Vec3>,
@@ -75,23 +78,25 @@ impl MaterialOptions {
 pub struct LoadOptions {
     /// What is said of all materials. Default: nothing.
     pub all: MaterialOptions,
-    /// What is said of single materials, by their names, before what is said of all. Default: nothing.
+    /// What is said of single materials, by their names, before what is said of all. Default:
+    /// nothing.
     pub materials: BTreeMap<String, MaterialOptions>,
     /// Whether surfaces keep normals, which only lighting needs. Default: `false`.
     pub keep_normals: bool,
-    /// Width over height of the picture that the camera frames the scene for, above 0; wider pictures show all of it,
-    /// too. Default: 1.
+    /// Width over height of the picture that the camera frames the scene for, above 0; wider
+    /// pictures show all of it, too. Default: 1.
     pub aspect: f32,
-    /// Where normals are made, faces that meet at a sharper angle than this keep their own: degrees, 0 (every edge is
-    /// sharp) to 180 (none is). Default: 60.
+    /// Where normals are made, faces that meet at a sharper angle than this keep their own:
+    /// degrees, 0 (every edge is sharp) to 180 (none is). Default: 60.
     pub crease_angle: f32,
-    /// Whether files that lie outside the OBJ's folder, also by a link, may be read when a material names them.
-    /// Files that the caller names may lie anywhere. Default: `false`.
+    /// Whether files that lie outside the OBJ's folder, also by a link, may be read when a material
+    /// names them. Files that the caller names may lie anywhere. Default: `false`.
     pub allow_outside: bool,
     /// Most texels a side of an image, 1 to 32768. Default: 32768.
     pub max_image_side: u32,
-    /// Most memory, in MiB, that all textures may take together while they are decoded and packed, by an estimate from
-    /// the heads of the files: about 60 bytes a texel. Default: 1024, room for one material of 4096 x 4096 texels.
+    /// Most memory, in MiB, that all textures may take together while they are decoded and packed,
+    /// by an estimate from the heads of the files: about 60 bytes a texel. Default: 1024, room for
+    /// one material of 4096 x 4096 texels.
     pub max_image_mib: u32,
     /// Most triangles, and most `v`, `vt` and `vn` lines each. Default: 50 million.
     pub max_triangles: u64,
@@ -120,7 +125,9 @@ impl LoadOptions {
     /// Refuses values out of their ranges.
     pub(super) fn check(&self) -> Result<()> {
         let mut given = self.materials.values().chain([&self.all]);
-        if given.any(|material| material.relief_depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth))) {
+        if given.any(|material| {
+            material.relief_depth.is_some_and(|depth| !(0.0..=1.0).contains(&depth))
+        }) {
             return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
         }
         if !(0.0..=180.0).contains(&self.crease_angle) {
@@ -137,7 +144,8 @@ impl LoadOptions {
         if num <= self.max_textures as usize {
             return Ok(());
         }
-        let reason = format!("the scene names {num} texture files, more than {}", self.max_textures);
+        let reason =
+            format!("the scene names {num} texture files, more than {}", self.max_textures);
         Err(Error::setting("max_textures", reason))
     }
 

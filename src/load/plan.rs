@@ -1,7 +1,7 @@
 //! Which image serves a material as colour, height and normals.
 //!
-//! Height: the caller's file, else `disp`/`map_disp`, else `bump`/`map_bump` when that image is gray. A coloured bump is
-//! a normal map, as `norm`/`map_Kn` is. Every choice is put into words.
+//! Height: the caller's file, else `disp`/`map_disp`, else `bump`/`map_bump` when that image is
+//! gray. A coloured bump is a normal map, as `norm`/`map_Kn` is. Every choice is put into words.
 
 use super::files::Folder;
 use super::mtl::{MtlMaterial, TextureRef};
@@ -93,19 +93,28 @@ pub(super) struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    /// Looks at the caller's maps and at the images of those `bump` lines whose meaning depends on them.
+    /// Looks at the caller's maps and at the images of those `bump` lines whose meaning depends on
+    /// them.
     ///
     /// # Errors
     /// Names a file that is missing or refused.
-    pub(super) fn new(options: &'a LoadOptions, folder: &'a Folder, materials: &[&MtlMaterial]) -> Result<Self> {
+    pub(super) fn new(
+        options: &'a LoadOptions,
+        folder: &'a Folder,
+        materials: &[&MtlMaterial],
+    ) -> Result<Self> {
         let of_all = with_real_paths(&options.all)?;
         let of_one = options.materials.iter();
-        let of_one = of_one.map(|(name, own)| Ok((name.as_str(), with_real_paths(own)?.or(&of_all))));
+        let of_one =
+            of_one.map(|(name, own)| Ok((name.as_str(), with_real_paths(own)?.or(&of_all))));
         let of_one = of_one.collect::<Result<_>>()?;
         let (is_gray, choices, warnings) = Default::default();
         let mut planner = Self { options, folder, of_all, of_one, is_gray, choices, warnings };
         planner.note("every material", &options.all);
-        options.materials.iter().for_each(|(name, own)| planner.note(&format!("material {name}"), own));
+        options
+            .materials
+            .iter()
+            .for_each(|(name, own)| planner.note(&format!("material {name}"), own));
         planner.look_at_bumps(materials)?;
         Ok(planner)
     }
@@ -116,7 +125,9 @@ impl<'a> Planner<'a> {
 
     /// Notes the files that the caller names.
     fn note(&mut self, whose: &str, given: &MaterialOptions) {
-        for (what, path) in [("colour", &given.albedo), ("height", &given.height), ("normals", &given.normal)] {
+        for (what, path) in
+            [("colour", &given.albedo), ("height", &given.height), ("normals", &given.normal)]
+        {
             if let Some(path) = path {
                 self.choices.push(format!("{whose}: {what} from {}", path.display()));
             }
@@ -127,9 +138,15 @@ impl<'a> Planner<'a> {
     fn look_at_bumps(&mut self, materials: &[&MtlMaterial]) -> Result<()> {
         let mut paths = BTreeSet::new();
         for material in materials {
-            let Some(bump) = material.bump.as_ref().filter(|bump| bump.texture.channel.is_none()) else { continue };
-            let find = |map: &TextureRef| self.folder.resolve(&map.texture.name, map.place()).ok().flatten();
-            let has_height = self.given(material).height.is_some() || material.height.as_ref().and_then(find).is_some();
+            let Some(bump) = material.bump.as_ref().filter(|bump| bump.texture.channel.is_none())
+            else {
+                continue;
+            };
+            let find = |map: &TextureRef| {
+                self.folder.resolve(&map.texture.name, map.place()).ok().flatten()
+            };
+            let has_height = self.given(material).height.is_some()
+                || material.height.as_ref().and_then(find).is_some();
             // Where both height and normals are settled without it, the image need not be read.
             if !has_height || self.wants_normals(material) {
                 paths.extend(find(bump));
@@ -140,7 +157,10 @@ impl<'a> Planner<'a> {
         let limits = self.options.image_limits();
         let is_gray: Vec<Result<bool>> = paths
             .par_iter()
-            .map(|path| Ok(decode::probe(path, limits)?.is_gray_format() || decode::samples(path, limits)?.is_gray()))
+            .map(|path| {
+                Ok(decode::probe(path, limits)?.is_gray_format()
+                    || decode::samples(path, limits)?.is_gray())
+            })
             .collect();
         for (path, is_gray) in paths.into_iter().zip(is_gray) {
             self.is_gray.insert(path, is_gray?);
@@ -160,7 +180,9 @@ impl<'a> Planner<'a> {
         let (albedo, albedo_clamped) = self.albedo(material)?;
         let bump = self.found(material.bump.as_ref())?;
         let (bump_height, bump_normal) = match bump {
-            Some((bump, path)) if bump.texture.channel.is_some() || self.is_gray.get(&path) != Some(&false) => {
+            Some((bump, path))
+                if bump.texture.channel.is_some() || self.is_gray.get(&path) != Some(&false) =>
+            {
                 (Some((bump, path)), None)
             }
             other => (None, other),
@@ -176,7 +198,10 @@ impl<'a> Planner<'a> {
     }
 
     /// The file behind a texture line, if there is one; a missing one is warned of.
-    fn found<'r>(&mut self, texture: Option<&'r TextureRef>) -> Result<Option<(&'r TextureRef, PathBuf)>> {
+    fn found<'r>(
+        &mut self,
+        texture: Option<&'r TextureRef>,
+    ) -> Result<Option<(&'r TextureRef, PathBuf)>> {
         let Some(texture) = texture else {
             return Ok(None);
         };
@@ -203,7 +228,8 @@ impl<'a> Planner<'a> {
         material: &MtlMaterial,
         bump: Option<(&TextureRef, PathBuf)>,
     ) -> Result<(Option<Map>, f32, bool)> {
-        let MaterialOptions { height, height_sense, relief_depth, .. } = self.given(material).clone();
+        let MaterialOptions { height, height_sense, relief_depth, .. } =
+            self.given(material).clone();
         let height_sense = height_sense.unwrap_or_default();
         let fallback = relief_depth.unwrap_or(DEFAULT_DEPTH);
         if let Some(path) = height {
@@ -218,15 +244,26 @@ impl<'a> Planner<'a> {
         let bump = line.bump.unwrap_or(DEFAULT_DEPTH);
         let depth = relief_depth.unwrap_or(bump.abs().min(1.0));
         if relief_depth.is_none() && bump.abs() > 1.0 {
-            self.warnings.push(texture.place().remark(format_args!("-bm {bump} is cut to a relief depth of 1 repeat")));
+            self.warnings.push(
+                texture
+                    .place()
+                    .remark(format_args!("-bm {bump} is cut to a relief depth of 1 repeat")),
+            );
         }
         let (keyword, name) = (texture.keyword, &line.name);
-        self.choices.push(format!("material {}: height from {keyword} {name}, relief depth {depth}", material.name));
+        self.choices.push(format!(
+            "material {}: height from {keyword} {name}, relief depth {depth}",
+            material.name
+        ));
         let kind = height_kind(height_sense, line.channel, line.range, bump < 0.0);
         Ok((Some(Map { path, kind }), depth, line.is_clamped))
     }
 
-    fn normal(&mut self, material: &MtlMaterial, bump: Option<(&TextureRef, PathBuf)>) -> Result<Option<Map>> {
+    fn normal(
+        &mut self,
+        material: &MtlMaterial,
+        bump: Option<(&TextureRef, PathBuf)>,
+    ) -> Result<Option<Map>> {
         let is_green_down = self.given(material).normal_y == Some(NormalY::Down);
         let kind = |strength: f32| Kind::Normal { strength: strength.to_bits(), is_green_down };
         if !self.options.keep_normals {
@@ -244,7 +281,12 @@ impl<'a> Planner<'a> {
     }
 }
 
-fn height_kind(sense: HeightSense, channel: Option<Channel>, [base, gain]: [f32; 2], is_turned: bool) -> Kind {
+fn height_kind(
+    sense: HeightSense,
+    channel: Option<Channel>,
+    [base, gain]: [f32; 2],
+    is_turned: bool,
+) -> Kind {
     let is_deep = sense == HeightSense::WhiteDeep;
     let range = if is_deep != is_turned { [1.0 - base, -gain] } else { [base, gain] };
     Kind::Height { channel, range: range.map(f32::to_bits) }
@@ -253,7 +295,8 @@ fn height_kind(sense: HeightSense, channel: Option<Channel>, [base, gain]: [f32;
 /// `given` with its files' absolute paths.
 fn with_real_paths(given: &MaterialOptions) -> Result<MaterialOptions> {
     let real = |path: &Option<PathBuf>| path.as_deref().map(real_path).transpose();
-    let (albedo, height, normal) = (real(&given.albedo)?, real(&given.height)?, real(&given.normal)?);
+    let (albedo, height, normal) =
+        (real(&given.albedo)?, real(&given.height)?, real(&given.normal)?);
     Ok(MaterialOptions { albedo, height, normal, ..given.clone() })
 }
 

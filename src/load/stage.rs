@@ -48,7 +48,11 @@ pub(super) struct Counter<'a> {
 
 impl<'a> Counter<'a> {
     /// Reports that none of `num` is done.
-    pub(super) fn new(num: usize, stage: fn(usize, usize) -> LoadStage, report: &'a Report<'a>) -> Self {
+    pub(super) fn new(
+        num: usize,
+        stage: fn(usize, usize) -> LoadStage,
+        report: &'a Report<'a>,
+    ) -> Self {
         if num > 0 {
             report(stage(0, num));
         }
@@ -57,7 +61,8 @@ impl<'a> Counter<'a> {
 
     /// Reports that one more is done.
     pub(super) fn add_one(&self) {
-        // Held while it reports, so that the numbers stay in order; a reporter's panic does no harm to a number.
+        // Held while it reports, so that the numbers stay in order; a reporter's panic does no harm
+        // to a number.
         let mut done = self.done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         *done += 1;
         (self.report)((self.stage)(*done, self.num));

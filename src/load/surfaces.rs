@@ -1,8 +1,8 @@
 //! Planned maps to shared surfaces.
 //!
-//! Input: a [`Plan`] for every material. Every image file is decoded once, in parallel, and every different plan becomes
-//! one [`Surface`], small ones in parallel too. What all of that needs is estimated from the heads of the files before any
-//! is decoded.
+//! Input: a [`Plan`] for every material. Every image file is decoded once, in parallel, and every
+//! different plan becomes one [`Surface`], small ones in parallel too. What all of that needs is
+//! estimated from the heads of the files before any is decoded.
 
 use super::options::LoadOptions;
 use super::plan::{Kind, Map, Plan};
@@ -15,14 +15,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Bytes of a texel in all levels, each also transposed: two words, a third for normals, 4/3 for the smaller levels.
+/// Bytes of a texel in all levels, each also transposed: two words, a third for normals, 4/3 for
+/// the smaller levels.
 const STORED_BYTES: u64 = 22;
 const STORED_BYTES_WITH_NORMALS: u64 = 32;
-/// Bytes of a texel while its surface is built, beyond its maps and what is stored in the end: copies of maps that another
-/// surface uses too.
+/// Bytes of a texel while its surface is built, beyond its maps and what is stored in the end:
+/// copies of maps that another surface uses too.
 const BUILD_BYTES: u64 = 8;
-/// Texels of surfaces that are built at once; a larger surface is built alone, by all threads. Counted in texels, not
-/// threads, so that what is refused does not depend on the machine.
+/// Texels of surfaces that are built at once; a larger surface is built alone, by all threads.
+/// Counted in texels, not threads, so that what is refused does not depend on the machine.
 const AT_ONCE: u64 = 1 << 23;
 
 #[derive(Clone)]
@@ -50,8 +51,9 @@ pub(super) fn build(
     let infos = paths.iter().copied().zip(infos).collect();
     check_memory(plans, &infos, options)?;
     let counter = Counter::new(files.len(), |done, num| LoadStage::Images { done, num }, report);
-    let decode_all =
-        |(path, kinds): (&&Path, &BTreeSet<&Kind>)| decode_all(path, kinds, limits).inspect(|_| counter.add_one());
+    let decode_all = |(path, kinds): (&&Path, &BTreeSet<&Kind>)| {
+        decode_all(path, kinds, limits).inspect(|_| counter.add_one())
+    };
     let decoded: Vec<_> = files.par_iter().map(decode_all).collect();
     let mut maps = BTreeMap::new();
     for of_file in decoded {
@@ -67,8 +69,10 @@ pub(super) fn build(
             num_texels += plan_texels(plan, &infos);
             batch.is_empty() || num_texels <= AT_ONCE
         }) {
-            // The last plan that uses a map takes it, so that two copies exist as briefly as possible.
-            let is_used_later = |map: &Map| left.iter().any(|plan| plan.maps().any(|other| other == map));
+            // The last plan that uses a map takes it, so that two copies exist as briefly as
+            // possible.
+            let is_used_later =
+                |map: &Map| left.iter().any(|plan| plan.maps().any(|other| other == map));
             batch.push((plan, surface_maps(plan, &mut maps, is_used_later, options.keep_normals)));
         }
         let built = batch.into_par_iter().map(|(plan, maps)| {
@@ -106,11 +110,18 @@ fn plan_texels(plan: &Plan, infos: &BTreeMap<&Path, ImageInfo>) -> u64 {
 }
 
 /// Refuses a scene whose textures would take too much memory, before any is decoded.
-fn check_memory(plans: &BTreeSet<Plan>, infos: &BTreeMap<&Path, ImageInfo>, options: &LoadOptions) -> Result<()> {
+fn check_memory(
+    plans: &BTreeSet<Plan>,
+    infos: &BTreeMap<&Path, ImageInfo>,
+    options: &LoadOptions,
+) -> Result<()> {
     let info = |map: &Map| infos.get(map.path.as_path());
     let decoded: u64 = infos.values().map(|info| info.num_bytes).sum();
     let maps: BTreeSet<&Map> = plans.iter().flat_map(Plan::maps).collect();
-    let converted: u64 = maps.iter().filter_map(|map| Some(num_texels(info(map)?.size) * map.kind.num_bytes())).sum();
+    let converted: u64 = maps
+        .iter()
+        .filter_map(|map| Some(num_texels(info(map)?.size) * map.kind.num_bytes()))
+        .sum();
     let (mut stored, mut sum, mut largest) = (0, 0, 0);
     for plan in plans {
         let has_normals = options.keep_normals && plan.has_relief();
@@ -123,22 +134,32 @@ fn check_memory(plans: &BTreeSet<Plan>, infos: &BTreeMap<&Path, ImageInfo>, opti
     let built = sum.min(largest.max(AT_ONCE)) * BUILD_BYTES;
     let mib = (decoded + converted + stored + built) >> 20;
     if mib > u64::from(options.max_image_mib) {
-        let reason = format!("the scene's textures need about {mib} MiB, more than {}", options.max_image_mib);
+        let reason = format!(
+            "the scene's textures need about {mib} MiB, more than {}",
+            options.max_image_mib
+        );
         return Err(Error::setting("max_image_mib", reason));
     }
     Ok(())
 }
 
-fn decode_all(path: &Path, kinds: &BTreeSet<&Kind>, limits: ImageLimits) -> Result<Vec<(Map, MapImage)>> {
+fn decode_all(
+    path: &Path,
+    kinds: &BTreeSet<&Kind>,
+    limits: ImageLimits,
+) -> Result<Vec<(Map, MapImage)>> {
     let samples = decode::samples(path, limits)?;
-    let map = |kind: &Kind| (Map { path: path.into(), kind: kind.clone() }, convert(&samples, kind));
+    let map =
+        |kind: &Kind| (Map { path: path.into(), kind: kind.clone() }, convert(&samples, kind));
     Ok(kinds.iter().map(|kind| map(kind)).collect())
 }
 
 fn convert(samples: &Samples, kind: &Kind) -> MapImage {
     match *kind {
         Kind::Color => MapImage::Color(samples.color()),
-        Kind::Height { channel, range } => MapImage::Height(samples.height(channel, range.map(f32::from_bits))),
+        Kind::Height { channel, range } => {
+            MapImage::Height(samples.height(channel, range.map(f32::from_bits)))
+        }
         Kind::Normal { strength, is_green_down } => {
             let green = if is_green_down { -1.0 } else { 1.0 };
             MapImage::Normal(samples.normal(f32::from_bits(strength), green))

@@ -16,8 +16,9 @@ pub struct Difference {
     pub psnr_db: f64,
     /// The first of the largest errors, row by row from the top.
     pub largest: LargestError,
-    /// Mean structural similarity of luma after Wang, Bovik, Sheikh and Simoncelli 2004: Gaussian windows of 11x11
-    /// pixels with a standard deviation of 1.5, K1 = 0.01, K2 = 0.03, and luma by Rec. 601. 1 is equal.
+    /// Mean structural similarity of luma after Wang, Bovik, Sheikh and Simoncelli 2004: Gaussian
+    /// windows of 11x11 pixels with a standard deviation of 1.5, K1 = 0.01, K2 = 0.03, and luma by
+    /// Rec. 601. 1 is equal.
     pub ssim: f64,
 }
 
@@ -41,7 +42,8 @@ pub struct LargestError {
 pub fn compare(a: &Picture, b: &Picture) -> Result<Difference> {
     check_sizes(a, b)?;
     // Rows in parallel, their sums in order: the same figures for any number of threads.
-    let rows: Vec<RowSums> = (0..a.height()).into_par_iter().map(|y| RowSums::of(a, b, y)).collect();
+    let rows: Vec<RowSums> =
+        (0..a.height()).into_par_iter().map(|y| RowSums::of(a, b, y)).collect();
     let total = rows.into_iter().fold(RowSums::default(), RowSums::then);
     if total.num_compared == 0 {
         return Err(Error::picture("pictures", "no pixel is opaque in both"));
@@ -93,7 +95,11 @@ impl RowSums {
             num_compared: self.num_compared + below.num_compared,
             num_opacity_unequal: self.num_opacity_unequal + below.num_opacity_unequal,
             squares: self.squares + below.squares,
-            largest: if below.largest.error > self.largest.error { below.largest } else { self.largest },
+            largest: if below.largest.error > self.largest.error {
+                below.largest
+            } else {
+                self.largest
+            },
         }
     }
 }

@@ -1,10 +1,11 @@
-//! FLIP: how large differences look when two pictures are shown in turn (P. Andersson, J. Nilsson, T. Akenine-Möller,
-//! M. Oskarsson, K. Åström, M. D. Fairchild 2020, "FLIP: A Difference Evaluator for Alternating Images"), for pictures of
-//! standard range.
+//! FLIP: how large differences look when two pictures are shown in turn (P. Andersson, J. Nilsson,
+//! T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild 2020, "FLIP: A Difference Evaluator
+//! for Alternating Images"), for pictures of standard range.
 //!
-//! Both pictures are taken to `YCxCz` and blurred as the eye blurs; their colours are compared in Lab by the `HyAB`
-//! distance, with the Hunt effect. Edges and points, found in the unblurred lightness, raise the error where only one
-//! picture has them: `error = colour ^ (1 - feature)`. Constants are the paper's.
+//! Both pictures are taken to `YCxCz` and blurred as the eye blurs; their colours are compared in
+//! Lab by the `HyAB` distance, with the Hunt effect. Edges and points, found in the unblurred
+//! lightness, raise the error where only one picture has them: `error = colour ^ (1 - feature)`.
+//! Constants are the paper's.
 
 use super::picture::{Picture, check_sizes, is_compared};
 use crate::error::{Error, Result};
@@ -12,17 +13,20 @@ use crate::texture::linear_from_srgb;
 use rayon::prelude::*;
 use std::f32::consts::PI;
 
-/// Pixels a degree of view where nothing else is said: a screen of 3840 pixels, 0.7 m wide, seen from 0.7 m.
+/// Pixels a degree of view where nothing else is said: a screen of 3840 pixels, 0.7 m wide, seen
+/// from 0.7 m.
 pub const PIXELS_PER_DEGREE: f32 = 67.020_64;
 
-/// Exponent of the colour difference, and where and to what it is bent so that small differences count.
+/// Exponent of the colour difference, and where and to what it is bent so that small differences
+/// count.
 const COLOR_EXPONENT: f32 = 0.7;
 const BEND: [f32; 2] = [0.4, 0.95];
 /// Width of a feature in degrees, and the exponent of its difference.
 const FEATURE_WIDTH: f32 = 0.082;
 const FEATURE_EXPONENT: f32 = 0.5;
 /// The eye's contrast sensitivity in `YCxCz`: sums of two Gaussians, `[a1, b1, a2, b2]`.
-const SENSITIVITY: [[f32; 4]; 3] = [[1.0, 0.0047, 0.0, 1e-5], [1.0, 0.0053, 0.0, 1e-5], [34.1, 0.04, 13.5, 0.025]];
+const SENSITIVITY: [[f32; 4]; 3] =
+    [[1.0, 0.0047, 0.0, 1e-5], [1.0, 0.0053, 0.0, 1e-5], [34.1, 0.04, 13.5, 0.025]];
 
 type Triple = [f32; 3];
 
@@ -35,17 +39,23 @@ pub struct Flip {
     pub errors: Vec<f32>,
 }
 
-/// The FLIP errors of a picture against a reference, seen at a number of pixels a degree (see [`PIXELS_PER_DEGREE`]).
+/// The FLIP errors of a picture against a reference, seen at a number of pixels a degree (see
+/// [`PIXELS_PER_DEGREE`]).
 ///
 /// # Errors
-/// Says so when the sizes differ, no pixel is opaque in both pictures, or the pixels a degree are not within 1 to 500.
+/// Says so when the sizes differ, no pixel is opaque in both pictures, or the pixels a degree are
+/// not within 1 to 500.
 pub fn flip(reference: &Picture, test: &Picture, pixels_per_degree: f32) -> Result<Flip> {
     check_sizes(reference, test)?;
     if !(1.0..=500.0).contains(&pixels_per_degree) {
-        return Err(Error::setting("pixels_per_degree", format!("{pixels_per_degree} is not within 1 to 500")));
+        return Err(Error::setting(
+            "pixels_per_degree",
+            format!("{pixels_per_degree} is not within 1 to 500"),
+        ));
     }
     let [a, b] = [reference, test].map(|picture| Seen::new(picture, pixels_per_degree));
-    let greatest = hyab(hunt(lab([0.0, 1.0, 0.0])), hunt(lab([0.0, 0.0, 1.0]))).powf(COLOR_EXPONENT);
+    let greatest =
+        hyab(hunt(lab([0.0, 1.0, 0.0])), hunt(lab([0.0, 0.0, 1.0]))).powf(COLOR_EXPONENT);
     let pixels = reference.pixels().par_iter().zip(test.pixels()).enumerate();
     let errors = pixels.map(|(i, (&pixel_a, &pixel_b))| {
         if !is_compared(pixel_a, pixel_b) {
@@ -53,11 +63,13 @@ pub fn flip(reference: &Picture, test: &Picture, pixels_per_degree: f32) -> Resu
         }
         let color = bent(hyab(a.lab[i], b.lab[i]).powf(COLOR_EXPONENT), greatest);
         let feature = [0, 1].map(|kind| (a.features[i][kind] - b.features[i][kind]).abs());
-        let feature = (feature[0].max(feature[1]) / std::f32::consts::SQRT_2).powf(FEATURE_EXPONENT);
+        let feature =
+            (feature[0].max(feature[1]) / std::f32::consts::SQRT_2).powf(FEATURE_EXPONENT);
         color.powf(1.0 - feature)
     });
     let errors: Vec<f32> = errors.collect();
-    let num = reference.pixels().iter().zip(test.pixels()).filter(|(a, b)| is_compared(**a, **b)).count();
+    let num =
+        reference.pixels().iter().zip(test.pixels()).filter(|(a, b)| is_compared(**a, **b)).count();
     if num == 0 {
         return Err(Error::picture("pictures", "no pixel is opaque in both"));
     }
@@ -84,10 +96,12 @@ struct Seen {
 impl Seen {
     fn new(picture: &Picture, pixels_per_degree: f32) -> Self {
         let size = [picture.width() as usize, picture.height() as usize];
-        let linear = picture.pixels().par_iter().map(|&[r, g, b, _]| [r, g, b].map(linear_from_srgb));
+        let linear =
+            picture.pixels().par_iter().map(|&[r, g, b, _]| [r, g, b].map(linear_from_srgb));
         let opponent: Vec<Triple> = linear.map(|rgb| ycxcz_of_xyz(xyz_of_rgb(rgb))).collect();
         let plane = |channel: usize| opponent.iter().map(|c| c[channel]).collect::<Vec<f32>>();
-        let blurred = [0, 1, 2].map(|channel| blur(&plane(channel), size, SENSITIVITY[channel], pixels_per_degree));
+        let blurred = [0, 1, 2]
+            .map(|channel| blur(&plane(channel), size, SENSITIVITY[channel], pixels_per_degree));
         let lab = (0..opponent.len()).into_par_iter().map(|i| {
             let rgb = rgb_of_xyz(xyz_of_ycxcz([blurred[0][i], blurred[1][i], blurred[2][i]]));
             hunt(lab(rgb.map(|c| c.clamp(0.0, 1.0))))
@@ -98,12 +112,19 @@ impl Seen {
 }
 
 /// The eye's blur: a sum of two Gaussians whose weights add up to 1.
-fn blur(plane: &[f32], size: [usize; 2], [a1, b1, a2, b2]: [f32; 4], pixels_per_degree: f32) -> Vec<f32> {
+fn blur(
+    plane: &[f32],
+    size: [usize; 2],
+    [a1, b1, a2, b2]: [f32; 4],
+    pixels_per_degree: f32,
+) -> Vec<f32> {
     // All channels are cut at the radius of the widest Gaussian.
     let widest = SENSITIVITY.iter().flat_map(|s| [s[1], s[3]]).fold(0.0, f32::max);
     let radius = (3.0 * (widest / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as i32;
     let taps = |b: f32| -> Vec<f32> {
-        let at = |i: i32| -(PI * PI) * (i as f32 / pixels_per_degree) * (i as f32 / pixels_per_degree) / b;
+        let at = |i: i32| {
+            -(PI * PI) * (i as f32 / pixels_per_degree) * (i as f32 / pixels_per_degree) / b
+        };
         (-radius..=radius).map(|i| at(i).exp()).collect()
     };
     let part = |a: f32, b: f32| {
@@ -143,7 +164,9 @@ fn features(lightness: &[f32], size: [usize; 2], pixels_per_degree: f32) -> Vec<
 fn normalized(taps: Vec<f32>) -> Vec<f32> {
     let positive: f32 = taps.iter().filter(|tap| **tap > 0.0).sum();
     let negative: f32 = -taps.iter().filter(|tap| **tap < 0.0).sum::<f32>();
-    taps.into_iter().map(|tap| if tap > 0.0 { tap / positive } else { tap / negative.max(f32::MIN_POSITIVE) }).collect()
+    taps.into_iter()
+        .map(|tap| if tap > 0.0 { tap / positive } else { tap / negative.max(f32::MIN_POSITIVE) })
+        .collect()
 }
 
 /// Convolves with `across` along x and `down` along y; the edge's pixels go on for ever.
@@ -154,8 +177,9 @@ fn convolve(plane: &[f32], [width, height]: [usize; 2], across: &[f32], down: &[
         taps.iter().enumerate().map(|(k, tap)| tap * at(place(k))).sum::<f32>()
     };
     let rows = plane.par_chunks(width);
-    let rows: Vec<f32> =
-        rows.flat_map_iter(|row| (0..width).map(move |x| sum(across, x, width, &|x| row[x]))).collect();
+    let rows: Vec<f32> = rows
+        .flat_map_iter(|row| (0..width).map(move |x| sum(across, x, width, &|x| row[x])))
+        .collect();
     let at = |i: usize| sum(down, i / width, height, &|y| rows[y * width + i % width]);
     (0..width * height).into_par_iter().map(at).collect()
 }
@@ -227,7 +251,8 @@ mod tests {
     fn picture(is_noisy: bool) -> Picture {
         let byte = |x: u32, y: u32, c: u32| {
             let base = (x * 5 + y * 3 + c * 40) % 256;
-            let hash = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ c.wrapping_mul(77);
+            let hash =
+                x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ c.wrapping_mul(77);
             let noise = (hash.wrapping_mul(0xC2B2_AE3D) >> 24) / 8;
             let step = if x > 32 { 60 } else { 0 };
             (base * 3 / 4 + if is_noisy { step + noise } else { 0 }).min(255)
@@ -243,19 +268,28 @@ mod tests {
         Picture::new(64, 48, vec![[rgb[0], rgb[1], rgb[2], 1.0]; 64 * 48]).unwrap()
     }
 
-    /// Means, and pixels (0, 0), (40, 24) and (33, 10), that the authors' program (nv-flip 0.1.2) gives.
+    /// Means, and pixels (0, 0), (40, 24) and (33, 10), that the authors' program (nv-flip 0.1.2)
+    /// gives.
     #[test]
     fn errors_are_those_of_the_authors_program() {
         let expected = [
             (picture(false), picture(true), [0.526_188_55, 0.273_379_98, 0.741_126, 0.780_748_07]),
-            (plain([0.0; 3]), plain([1.0; 3]), [0.967_365_3, 0.967_391_85, 0.967_391_85, 0.967_391_85]),
+            (
+                plain([0.0; 3]),
+                plain([1.0; 3]),
+                [0.967_365_3, 0.967_391_85, 0.967_391_85, 0.967_391_85],
+            ),
             (plain([0.0, 1.0, 0.0]), plain([0.0, 0.0, 1.0]), [1.0; 4]),
         ];
         for (reference, test, [mean, errors @ ..]) in expected {
             let found = flip(&reference, &test, 67.0).unwrap();
             assert!((found.mean - mean).abs() < 1e-3, "{} {mean}", found.mean);
             for (place, error) in [0, 24 * 64 + 40, 10 * 64 + 33].into_iter().zip(errors) {
-                assert!((f64::from(found.errors[place]) - error).abs() < 2e-3, "{} {error}", found.errors[place]);
+                assert!(
+                    (f64::from(found.errors[place]) - error).abs() < 2e-3,
+                    "{} {error}",
+                    found.errors[place]
+                );
             }
         }
     }
@@ -272,7 +306,9 @@ mod tests {
 
     #[test]
     fn derivatives_see_no_even_area() {
-        for (edge, point) in features(&[0.7; 100], [10, 10], PIXELS_PER_DEGREE).into_iter().map(|[e, p]| (e, p)) {
+        for (edge, point) in
+            features(&[0.7; 100], [10, 10], PIXELS_PER_DEGREE).into_iter().map(|[e, p]| (e, p))
+        {
             assert!(edge < 1e-5 && point < 1e-5);
         }
     }

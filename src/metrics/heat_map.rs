@@ -1,15 +1,17 @@
 //! Errors as colours.
 //!
-//! The ramp runs from black over violet, red and orange to pale yellow. Its lightness in Oklab (B. Ottosson, 2020) grows
-//! evenly with the error, so that equal steps of error look equally large, to the colour-blind too.
+//! The ramp runs from black over violet, red and orange to pale yellow. Its lightness in Oklab (B.
+//! Ottosson, 2020) grows evenly with the error, so that equal steps of error look equally large, to
+//! the colour-blind too.
 
 use super::picture::{Picture, check_sizes, is_compared};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 use rayon::prelude::*;
 
-/// The largest error of the three channels of each pixel as a colour: black is 0, pale yellow is `full_scale` or more,
-/// a value above 0 and up to 1. Pixels that are not opaque in both pictures are transparent.
+/// The largest error of the three channels of each pixel as a colour: black is 0, pale yellow is
+/// `full_scale` or more, a value above 0 and up to 1. Pixels that are not opaque in both pictures
+/// are transparent.
 ///
 /// # Errors
 /// Says so when the sizes differ or `full_scale` is out of its range.
@@ -24,10 +26,12 @@ pub fn heat_map(a: &Picture, b: &Picture, full_scale: f32) -> Result<Frame> {
     Ok(Frame { width: a.width(), height: a.height(), pixels })
 }
 
-/// Errors, row by row, in the colours of [`heat_map`]: black is 0, pale yellow is `full_scale` or more.
+/// Errors, row by row, in the colours of [`heat_map`]: black is 0, pale yellow is `full_scale` or
+/// more.
 ///
 /// # Errors
-/// Says so when there are not `width` times some rows of errors, or `full_scale` is not above 0 and up to 1.
+/// Says so when there are not `width` times some rows of errors, or `full_scale` is not above 0 and
+/// up to 1.
 pub fn errors_as_colors(errors: &[f32], width: u32, full_scale: f32) -> Result<Frame> {
     check_scale(full_scale)?;
     if width == 0 || errors.is_empty() || !errors.len().is_multiple_of(width as usize) {
@@ -46,7 +50,8 @@ fn check_scale(full_scale: f32) -> Result<()> {
 
 /// Opaque linear RGB of the ramp at `t`, 0 to 1.
 fn ramp(t: f32) -> [f32; 4] {
-    // A Bézier curve through Oklab's plane of hues, from the grey axis by violet and orange to a pale yellow.
+    // A Bézier curve through Oklab's plane of hues, from the grey axis by violet and orange to a
+    // pale yellow.
     let curve = |p1: f32, p2: f32, p3: f32| {
         let s = 1.0 - t;
         3.0 * s * s * t * p1 + 3.0 * s * t * t * p2 + t * t * t * p3

@@ -1,7 +1,9 @@
-//! How far two pictures are apart: peak signal-to-noise ratio, largest error, structural similarity, FLIP, heat map.
+//! How far two pictures are apart: peak signal-to-noise ratio, largest error, structural
+//! similarity, FLIP, heat map.
 //!
-//! All figures are of sRGB-encoded values from 0 to 1, over red, green and blue, and over the pixels that are opaque in
-//! both pictures ([`compare`]). A [`Frame`](crate::Frame) is encoded without rounding to 8 bits.
+//! All figures are of sRGB-encoded values from 0 to 1, over red, green and blue, and over the
+//! pixels that are opaque in both pictures ([`compare`]). A [`Frame`](crate::Frame) is encoded
+//! without rounding to 8 bits.
 //!
 //! ```text
 //! PSNR = 10 log10(1 / mean((a - b)^2))

@@ -17,30 +17,38 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Most pixels that [`open`](Self::open) takes, 4096 x 4096: two pictures can be compared within 1 GiB.
+    /// Most pixels that [`open`](Self::open) takes, 4096 x 4096: two pictures can be compared
+    /// within 1 GiB.
     pub const MAX_PIXELS: u64 = 1 << 24;
 
-    /// A picture from rows of pixels, the top row first. Values are clamped to 0 to 1; NaN becomes 0.
+    /// A picture from rows of pixels, the top row first. Values are clamped to 0 to 1; NaN becomes
+    /// 0.
     ///
     /// # Errors
     /// Says so when the number of pixels is not width times height, or 0.
     pub fn new(width: u32, height: u32, mut pixels: Vec<[f32; 4]>) -> Result<Self> {
         if pixels.len() as u64 != u64::from(width) * u64::from(height) || pixels.is_empty() {
-            return Err(Error::picture("picture", "the number of pixels must be width times height and above 0"));
+            return Err(Error::picture(
+                "picture",
+                "the number of pixels must be width times height and above 0",
+            ));
         }
         pixels.iter_mut().flatten().for_each(|value| *value = clamped(*value));
         Ok(Self { width, height, pixels })
     }
 
-    /// Reads an image file: PNG, JPEG, TGA, TIFF, BMP, EXR or HDR. Float formats are taken as linear, others as sRGB.
+    /// Reads an image file: PNG, JPEG, TGA, TIFF, BMP, EXR or HDR. Float formats are taken as
+    /// linear, others as sRGB.
     ///
     /// # Errors
-    /// Names the file and why it cannot be read, or that it has more than [`MAX_PIXELS`](Self::MAX_PIXELS) pixels.
+    /// Names the file and why it cannot be read, or that it has more than
+    /// [`MAX_PIXELS`](Self::MAX_PIXELS) pixels.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         Self::open_within(path, Self::MAX_PIXELS)
     }
 
-    /// As [`open`](Self::open), with another limit of the number of pixels; one takes 32 bytes while it is read.
+    /// As [`open`](Self::open), with another limit of the number of pixels; one takes 32 bytes
+    /// while it is read.
     ///
     /// # Errors
     /// Names the file and why it cannot be read, or that it has more than `max_pixels` pixels.
@@ -87,8 +95,9 @@ impl Picture {
 }
 
 impl From<&Frame> for Picture {
-    /// The frame without rounding to 8 bits; linear values above 1 are clamped, as they are in 8-bit files. Pixels that a
-    /// frame made by hand lacks are transparent, and those that it has too many are left out.
+    /// The frame without rounding to 8 bits; linear values above 1 are clamped, as they are in
+    /// 8-bit files. Pixels that a frame made by hand lacks are transparent, and those that it has
+    /// too many are left out.
     fn from(frame: &Frame) -> Self {
         let encode = |&[r, g, b, opacity]: &[f32; 4]| {
             let opacity = clamped(opacity);

@@ -1,14 +1,16 @@
-//! Mean structural similarity (Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli: Image Quality Assessment: From
-//! Error Visibility to Structural Similarity, IEEE Transactions on Image Processing 13(4), 2004).
+//! Mean structural similarity (Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli: Image Quality
+//! Assessment: From Error Visibility to Structural Similarity, IEEE Transactions on Image
+//! Processing 13(4), 2004).
 //!
 //! ```text
 //! ssim = (2 ma mb + C1) (2 sab + C2) / ((ma^2 + mb^2 + C1) (saa + sbb + C2)),   C1 = 0.01^2, C2 = 0.03^2
 //! ```
 //!
-//! `ma`, `mb` are the means, `saa`, `sbb`, `sab` the variances and the covariance of luma in a Gaussian window around a
-//! pixel. The mean is over the compared pixels whose window lies within the picture, as in the authors' program; a
-//! picture too small for any such pixel uses all its pixels. A window counts only the compared pixels within it, its
-//! weights scaled to a sum of 1: so a picture that is opaque everywhere gives the authors' figure.
+//! `ma`, `mb` are the means, `saa`, `sbb`, `sab` the variances and the covariance of luma in a
+//! Gaussian window around a pixel. The mean is over the compared pixels whose window lies within
+//! the picture, as in the authors' program; a picture too small for any such pixel uses all its
+//! pixels. A window counts only the compared pixels within it, its weights scaled to a sum of 1: so
+//! a picture that is opaque everywhere gives the authors' figure.
 
 use super::picture::{Picture, is_compared};
 use rayon::prelude::*;
@@ -26,10 +28,13 @@ pub(super) fn mean_ssim(a: &Picture, b: &Picture) -> f64 {
     let (width, height) = (a.width() as usize, a.height() as usize);
     // Margins that keep windows within the picture, or none where that leaves nothing.
     let margins = [width, height].map(|n| if n >= NUM_TAPS { RADIUS } else { 0 });
-    sum_within(a, b, margins).or_else(|| sum_within(a, b, [0, 0])).map_or(1.0, |(sum, num)| sum / num as f64)
+    sum_within(a, b, margins)
+        .or_else(|| sum_within(a, b, [0, 0]))
+        .map_or(1.0, |(sum, num)| sum / num as f64)
 }
 
-/// The sum and number of window figures of pixels that keep the margins, or `None` where there are none.
+/// The sum and number of window figures of pixels that keep the margins, or `None` where there are
+/// none.
 fn sum_within(a: &Picture, b: &Picture, [margin_x, margin_y]: [usize; 2]) -> Option<(f64, u64)> {
     let (width, height) = (a.width() as usize, a.height() as usize);
     let taps = gaussian();
@@ -48,7 +53,8 @@ fn sum_within(a: &Picture, b: &Picture, [margin_x, margin_y]: [usize; 2]) -> Opt
     (total.1 > 0).then_some(total)
 }
 
-/// The windows' weights along one axis; they need no sum of 1, since moments are divided by the first.
+/// The windows' weights along one axis; they need no sum of 1, since moments are divided by the
+/// first.
 fn gaussian() -> [f64; NUM_TAPS] {
     std::array::from_fn(|i| {
         let distance = i as f64 - RADIUS as f64;
@@ -64,9 +70,13 @@ fn luma([r, g, b, _]: [f32; 4]) -> f64 {
 fn vertical_moments(a: &Picture, b: &Picture, y: usize, taps: &[f64; NUM_TAPS]) -> Vec<Moments> {
     let mut columns = vec![[0.0; 6]; a.width() as usize];
     for (i, tap) in taps.iter().enumerate() {
-        let Some(row) = (y + i).checked_sub(RADIUS).filter(|&row| row < a.height() as usize) else { continue };
+        let Some(row) = (y + i).checked_sub(RADIUS).filter(|&row| row < a.height() as usize) else {
+            continue;
+        };
         let pixels = a.row(row as u32).iter().zip(b.row(row as u32));
-        for (sums, (&a, &b)) in columns.iter_mut().zip(pixels).filter(|(_, (a, b))| is_compared(**a, **b)) {
+        for (sums, (&a, &b)) in
+            columns.iter_mut().zip(pixels).filter(|(_, (a, b))| is_compared(**a, **b))
+        {
             let (a, b) = (luma(a), luma(b));
             add(sums, *tap, [1.0, a, b, a * a, b * b, a * b]);
         }

@@ -1,9 +1,10 @@
-//! The attribute planes of the triangles that turn out to be visible, eight at a time: lanes are triangles.
+//! The attribute planes of the triangles that turn out to be visible, eight at a time: lanes are
+//! triangles.
 //!
-//! The ray to a corner, in the corner's texture frame, solves `ray = alpha U + beta V - gamma s N` with `U = dP/du`,
-//! `V = dP/dv`, `s = sqrt(|U x V|)`. By Cramer's rule, with `volume = N . (U x V)`, `alpha = (V x N) . ray / volume`,
-//! `beta = (N x U) . ray / volume`, `gamma = -(U x V) . ray / (s volume)`. With a frame at each corner, curved surfaces
-//! stay smooth.
+//! The ray to a corner, in the corner's texture frame, solves `ray = alpha U + beta V - gamma s N`
+//! with `U = dP/du`, `V = dP/dv`, `s = sqrt(|U x V|)`. By Cramer's rule, with `volume = N . (U x
+//! V)`, `alpha = (V x N) . ray / volume`, `beta = (N x U) . ray / volume`, `gamma = -(U x V) . ray
+//! / (s volume)`. With a frame at each corner, curved surfaces stay smooth.
 
 use super::quad::{AttributePlanes, LitPlanes, Plane};
 use crate::geometry::{BasisLanes, Geometry, Projection, ScreenTriangle};
@@ -12,8 +13,8 @@ use crate::settings::{Lighting, Settings};
 use crate::simd::f64x8;
 use glam::Vec3;
 
-/// A frame whose volume is less than this share of the product of its lengths counts as flat; tangents in f32 are not
-/// known better.
+/// A frame whose volume is less than this share of the product of its lengths counts as flat;
+/// tangents in f32 are not known better.
 const FLAT: f64 = 1e-6;
 
 /// Eight vectors of three components.
@@ -37,9 +38,15 @@ pub(super) struct PlaneMaker<'a> {
 impl AttributePlanes {
     /// The planes of the scene's triangle that `triangle` is, or is a piece of.
     #[must_use]
-    pub fn new(geometry: &Geometry, triangle: &ScreenTriangle, scene: &Scene, settings: &Settings) -> Self {
+    pub fn new(
+        geometry: &Geometry,
+        triangle: &ScreenTriangle,
+        scene: &Scene,
+        settings: &Settings,
+    ) -> Self {
         let mut planes = [Self::default()];
-        PlaneMaker::new(geometry, scene, settings).fill(&mut planes, &[[triangle.mesh, triangle.triangle]]);
+        PlaneMaker::new(geometry, scene, settings)
+            .fill(&mut planes, &[[triangle.mesh, triangle.triangle]]);
         let [planes] = planes;
         planes
     }
@@ -55,7 +62,8 @@ impl<'a> PlaneMaker<'a> {
     pub(super) fn fill(&self, planes: &mut [AttributePlanes], triangles: &[[u32; 2]]) {
         for (planes, triangles) in planes.chunks_mut(8).zip(triangles.chunks(8)) {
             // Lanes without a triangle repeat the last one.
-            let corners = std::array::from_fn(|lane| self.corners(triangles[lane.min(triangles.len() - 1)]));
+            let corners =
+                std::array::from_fn(|lane| self.corners(triangles[lane.min(triangles.len() - 1)]));
             self.fill_lanes(planes, &corners);
         }
     }
@@ -66,23 +74,32 @@ impl<'a> PlaneMaker<'a> {
     }
 
     fn fill_lanes(&self, planes: &mut [AttributePlanes], corners: &[Corners; 8]) {
-        let rays = vectors(corners, |mesh, i| mesh.positions[i]).map(|position| self.projection.rays(position));
-        let basis = BasisLanes::new(rays.map(|ray| self.projection.views_from_rays(ray)), self.projection.center);
+        let rays = vectors(corners, |mesh, i| mesh.positions[i])
+            .map(|position| self.projection.rays(position));
+        let basis = BasisLanes::new(
+            rays.map(|ray| self.projection.views_from_rays(ray)),
+            self.projection.center,
+        );
         let inverse_w = basis.inverse_w();
-        let tex_coords =
-            vectors(corners, |mesh, i| mesh.tex_coords.get(i).map_or(Vec3::ZERO, |uv| Vec3::new(uv.x, uv.y, 0.0)));
+        let tex_coords = vectors(corners, |mesh, i| {
+            mesh.tex_coords.get(i).map_or(Vec3::ZERO, |uv| Vec3::new(uv.x, uv.y, 0.0))
+        });
         let uv = [0, 1].map(|axis| basis.plane(tex_coords.map(|uv| uv[axis])));
         for (lane, planes) in planes.iter_mut().enumerate() {
             planes.inverse_w = one(&inverse_w, lane);
             let is_textured = !corners[lane].mesh.tex_coords.is_empty();
-            planes.uv = if is_textured { [0, 1].map(|i| one(&uv[i], lane)) } else { [Plane::default(); 2] };
+            planes.uv =
+                if is_textured { [0, 1].map(|i| one(&uv[i], lane)) } else { [Plane::default(); 2] };
             planes.view = [Plane::default(), Plane::default(), planes.inverse_w];
         }
         if corners.iter().any(|corners| self.needs_view(corners)) {
             let (normals, tangents) = frames(corners);
-            let views = [0, 1, 2].map(|c| view_in_texture_frame(rays[c], normals[c], [tangents[0][c], tangents[1][c]]));
+            let views = [0, 1, 2].map(|c| {
+                view_in_texture_frame(rays[c], normals[c], [tangents[0][c], tangents[1][c]])
+            });
             let view = [0, 1, 2].map(|axis| basis.plane(views.map(|view| view[axis])));
-            let planes = planes.iter_mut().enumerate().filter(|(lane, _)| self.needs_view(&corners[*lane]));
+            let planes =
+                planes.iter_mut().enumerate().filter(|(lane, _)| self.needs_view(&corners[*lane]));
             planes.for_each(|(lane, planes)| planes.view = [0, 1, 2].map(|i| one(&view[i], lane)));
         }
         if self.is_lit {
@@ -96,7 +113,8 @@ impl<'a> PlaneMaker<'a> {
     fn needs_view(&self, corners: &Corners) -> bool {
         let is_flat = |mesh: &Mesh| {
             let surface = self.scene.materials[mesh.material].surface.as_ref();
-            mesh.tex_coords.is_empty() || surface.is_some_and(|surface| surface.relief_depth() == 0.0)
+            mesh.tex_coords.is_empty()
+                || surface.is_some_and(|surface| surface.relief_depth() == 0.0)
         };
         self.parallax && !is_flat(corners.mesh)
     }
@@ -139,12 +157,16 @@ fn vectors(corners: &[Corners; 8], of: impl Fn(&Mesh, usize) -> Vec3) -> [Vector
 
 /// Normals, dP/du and dP/dv, corner by corner; tangents are 0 without texture coordinates.
 fn frames(corners: &[Corners; 8]) -> ([Vectors; 3], [[Vectors; 3]; 2]) {
-    let tangents = [0, 1]
-        .map(|axis| vectors(corners, |mesh, i| mesh.tangents.get(i).map_or(Vec3::ZERO, |tangents| tangents[axis])));
+    let tangents = [0, 1].map(|axis| {
+        vectors(corners, |mesh, i| {
+            mesh.tangents.get(i).map_or(Vec3::ZERO, |tangents| tangents[axis])
+        })
+    });
     (vectors(corners, |mesh, i| mesh.normals[i]), tangents)
 }
 
-/// `(alpha, beta, gamma)` of rays in the texture frames of vertices; straight down where there is no frame.
+/// `(alpha, beta, gamma)` of rays in the texture frames of vertices; straight down where there is
+/// no frame.
 fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vectors {
     let across = cross(u, v);
     let volume = dot(n, across);
@@ -154,7 +176,11 @@ fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vect
         & volume.is_finite();
     let s = dot(across, across).sqrt().sqrt();
     let scale = f64x8::ONE / (volume * s);
-    let solved = [dot(cross(v, n), ray) * s * scale, dot(cross(n, u), ray) * s * scale, -dot(across, ray) * scale];
+    let solved = [
+        dot(cross(v, n), ray) * s * scale,
+        dot(cross(n, u), ray) * s * scale,
+        -dot(across, ray) * scale,
+    ];
     let straight = [f64x8::ZERO, f64x8::ZERO, f64x8::ONE];
     std::array::from_fn(|i| is_frame.select(solved[i], straight[i]))
 }

@@ -1,8 +1,8 @@
 //! Which triangles may be seen in which tile.
 //!
-//! The triangles' chunks are split into groups; each group sorts its own triangles by tile with two passes, one that counts
-//! and one that fills, into one flat list. A tile reads its part of group after group, which is the triangles' order, so
-//! neither groups nor threads show.
+//! The triangles' chunks are split into groups; each group sorts its own triangles by tile with two
+//! passes, one that counts and one that fills, into one flat list. A tile reads its part of group
+//! after group, which is the triangles' order, so neither groups nor threads show.
 
 use super::edge::Edges;
 use super::grid::{TileGrid, bounds};
@@ -41,7 +41,8 @@ impl Group {
             sum += *start;
             *start = sum;
         }
-        // `starts[tile]` is moved on to the tile's end while filling, and set back by one tile after.
+        // `starts[tile]` is moved on to the tile's end while filling, and set back by one tile
+        // after.
         self.triangles.resize(sum as usize, 0);
         let all = chunks.flat_map(|chunk| geometry.chunk(chunk));
         for ((index, triangle), &only) in all.zip(&self.tiles) {
@@ -74,8 +75,9 @@ impl TileRange {
         let shift = grid.tile_size.trailing_zeros();
         let is_empty = bounds.min[0] >= bounds.max[0] || bounds.min[1] >= bounds.max[1];
         let first = [0, 1].map(|i| (bounds.min[i] - grid.area.min[i]) >> shift);
-        let last =
-            [0, 1].map(|i| if is_empty { first[i] - 1 } else { (bounds.max[i] - 1 - grid.area.min[i]) >> shift });
+        let last = [0, 1].map(|i| {
+            if is_empty { first[i] - 1 } else { (bounds.max[i] - 1 - grid.area.min[i]) >> shift }
+        });
         Self { first, last, columns: grid.num_tiles[0] }
     }
 
@@ -95,12 +97,16 @@ impl TileRange {
     fn for_each(&self, triangle: &ScreenTriangle, grid: &TileGrid, mut found: impl FnMut(usize)) {
         let Self { first, last, .. } = *self;
         if last[0] - first[0] <= 1 && last[1] - first[1] <= 1 {
-            (first[1]..=last[1]).for_each(|y| (first[0]..=last[0]).for_each(|x| found(self.tile(x, y))));
+            (first[1]..=last[1])
+                .for_each(|y| (first[0]..=last[0]).for_each(|x| found(self.tile(x, y))));
             return;
         }
         // The corners of the box around all samples stand for them.
         let [least, most] = grid.offset_bounds;
-        let edges = Edges::<4>::new(&triangle.corners, &[[least; 2], [most, least], [least, most], [most; 2]]);
+        let edges = Edges::<4>::new(
+            &triangle.corners,
+            &[[least; 2], [most, least], [least, most], [most; 2]],
+        );
         for y in first[1]..=last[1] {
             for x in first[0]..=last[0] {
                 if !edges.misses(&grid.rect(self.tile(x, y))) {

@@ -3,7 +3,8 @@
 use super::gather::SeenQuad;
 use super::quad::{AttributePlanes, QuadPair};
 
-/// What a block of 16x16 pixels sees of one material: each triangle's quads, row by row of each 8x8 pixels.
+/// What a block of 16x16 pixels sees of one material: each triangle's quads, row by row of each 8x8
+/// pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadBlock<'a> {
     /// Index of the material.
@@ -37,7 +38,8 @@ impl<'a> QuadBlock<'a> {
         };
         let coverage = [first.coverage, coverage].map(|bytes| u64::from(u32::from_le_bytes(bytes)));
         let coverage = (coverage[0] | coverage[1] << 32).to_le_bytes();
-        let origin = [first, second].map(|quad| [0, 1].map(|i| tile[i] + i32::from(quad.origin[i])));
+        let origin =
+            [first, second].map(|quad| [0, 1].map(|i| tile[i] + i32::from(quad.origin[i])));
         let planes = [first, second].map(|quad| &planes[quad.triangle as usize]);
         QuadPair::new(material, origin, coverage, planes)
     }

@@ -4,8 +4,8 @@ use super::gather::SeenQuad;
 use crate::frame::Pixel;
 use crate::simd::{PixelLanes, quads_by_pixel};
 
-/// Pixels in linear light, row by row: RGB, premultiplied by the fourth component, the opacity. Rows and columns are an even
-/// number, so that every quad lies within.
+/// Pixels in linear light, row by row: RGB, premultiplied by the fourth component, the opacity.
+/// Rows and columns are an even number, so that every quad lies within.
 #[derive(Debug, Default)]
 pub(super) struct Canvas {
     pixels: Vec<[f32; 4]>,
@@ -28,7 +28,8 @@ impl Canvas {
         self.pixels.fill([0.0; 4]);
     }
 
-    /// Adds the colours of one or two quads to the pixels, `share` for each sample; gives how many pixels took part.
+    /// Adds the colours of one or two quads to the pixels, `share` for each sample; gives how many
+    /// pixels took part.
     #[inline]
     pub(super) fn add(&mut self, pair: &[SeenQuad], share: f32, colors: &[PixelLanes; 3]) -> u64 {
         let [r, g, b] = colors.each_ref().map(PixelLanes::as_array);
@@ -47,7 +48,8 @@ impl Canvas {
         num
     }
 
-    /// Sets the pixels of one or two quads of which one triangle covers every sample; gives how many pixels that were.
+    /// Sets the pixels of one or two quads of which one triangle covers every sample; gives how
+    /// many pixels that were.
     #[inline]
     pub(super) fn set(&mut self, pair: &[SeenQuad], colors: &[PixelLanes; 3]) -> u64 {
         let [r, g, b] = *colors;
@@ -74,7 +76,9 @@ impl Canvas {
 
     /// Sets the tile's rows of the frame.
     pub(super) fn copy_to<P: Pixel>(&self, rows: &mut [&mut [P]]) {
-        for (row, pixels) in rows.iter_mut().zip(self.pixels.chunks_exact(self.stride)).take(self.size[1]) {
+        for (row, pixels) in
+            rows.iter_mut().zip(self.pixels.chunks_exact(self.stride)).take(self.size[1])
+        {
             P::set_row(row, &pixels[..row.len()]);
         }
     }

@@ -1,7 +1,8 @@
 //! A frame tile by tile: visibility, quads, shading, and the sum of colours.
 //!
-//! Each tile owns its rows of the frame, so tiles run in parallel without locks. What a tile needs while it is drawn lies in
-//! a [`Scratch`], taken from a pool and given back, so a steady frame allocates nothing for tiles or triangles.
+//! Each tile owns its rows of the frame, so tiles run in parallel without locks. What a tile needs
+//! while it is drawn lies in a [`Scratch`], taken from a pool and given back, so a steady frame
+//! allocates nothing for tiles or triangles.
 
 use super::attributes::PlaneMaker;
 use super::bin::Bins;
@@ -20,10 +21,12 @@ use crate::settings::Settings;
 use crate::simd::PixelLanes;
 use rayon::prelude::*;
 
-/// What was drawn, and what it took. Times are in milliseconds, of all threads together but for `binning_ms`.
+/// What was drawn, and what it took. Times are in milliseconds, of all threads together but for
+/// `binning_ms`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RasterStats {
-    /// Screen triangles that were left after culling and clipping; a clipped one may count as several.
+    /// Screen triangles that were left after culling and clipping; a clipped one may count as
+    /// several.
     pub triangles_drawn: u64,
     /// Pixels shaded: once for each triangle that a sample of the pixel sees.
     pub pixels_shaded: u64,
@@ -68,14 +71,17 @@ pub fn draw(
     shade: &(impl Fn(&QuadPair) -> [PixelLanes; 3] + Sync),
     frame: &mut Frame,
 ) -> RasterStats {
-    let shade = |block: &QuadBlock, colors: &mut Vec<_>| colors.extend(block.pairs().map(|pair| shade(&pair)));
+    let shade = |block: &QuadBlock, colors: &mut Vec<_>| {
+        colors.extend(block.pairs().map(|pair| shade(&pair)))
+    };
     Rasterizer::default().draw(geometry, (scene, settings), &shade, &|| 0.0, frame)
 }
 
 impl Rasterizer {
-    /// Draws the triangles of `geometry`, which must have been projected from `scene` under `settings`. `shade` appends
-    /// the linear red, green and blue of eight pixels for each pair of a block, which must depend on that block only. `clock`
-    /// gives milliseconds. The frame is resized to the [area](TileGrid::area) of the tiles and overwritten.
+    /// Draws the triangles of `geometry`, which must have been projected from `scene` under
+    /// `settings`. `shade` appends the linear red, green and blue of eight pixels for each pair of
+    /// a block, which must depend on that block only. `clock` gives milliseconds. The frame is
+    /// resized to the [area](TileGrid::area) of the tiles and overwritten.
     pub fn draw<P: Pixel>(
         &mut self,
         geometry: &Geometry,
@@ -100,13 +106,17 @@ impl Rasterizer {
         let tiles = rows
             .par_chunks_mut(grid.tile_size as usize)
             .enumerate()
-            .map_init(|| scratches.take(), |scratch, (tile, rows)| painter.paint(tile, rows, scratch, shade))
+            .map_init(
+                || scratches.take(),
+                |scratch, (tile, rows)| painter.paint(tile, rows, scratch, shade),
+            )
             .reduce(RasterStats::default, RasterStats::add);
         RasterStats { triangles_drawn: geometry.num_triangles() as u64, binning_ms, ..tiles }
     }
 }
 
-/// The frame's rows cut into tiles: `tile_size` slices a tile, tile after tile; empty ones below the frame's last row.
+/// The frame's rows cut into tiles: `tile_size` slices a tile, tile after tile; empty ones below
+/// the frame's last row.
 fn rows_by_tile<'a, P>(frame: &'a mut Frame<P>, grid: &TileGrid) -> Vec<&'a mut [P]> {
     let (width, tile_size) = (frame.width as usize, grid.tile_size as usize);
     let mut slices = Vec::with_capacity(grid.num() * tile_size);
@@ -202,7 +212,8 @@ impl Painter<'_> {
         quads.iter().for_each(|quad| slots[quad.triangle as usize] = 0);
         triangles.clear();
         materials.clear();
-        // In the list's order, neighbours in the mesh are neighbours here and find their vertices in the cache.
+        // In the list's order, neighbours in the mesh are neighbours here and find their vertices
+        // in the cache.
         for (slot, &index) in slots.iter_mut().zip(list.iter()).filter(|(slot, _)| **slot != NONE) {
             *slot = triangles.len() as u32;
             let ScreenTriangle { mesh, triangle, .. } = *self.geometry.triangle(index);
@@ -216,11 +227,12 @@ impl Painter<'_> {
         if planes.len() < triangles.len() {
             planes.resize_with(triangles.len(), AttributePlanes::default);
         }
-        PlaneMaker::new(self.geometry, self.scene, self.settings).fill(&mut planes[..triangles.len()], triangles);
+        PlaneMaker::new(self.geometry, self.scene, self.settings)
+            .fill(&mut planes[..triangles.len()], triangles);
     }
 
-    /// Shades the quads block by block and adds their colours to the pixels; gives how many pixels that was, and what the
-    /// shading took.
+    /// Shades the quads block by block and adds their colours to the pixels; gives how many pixels
+    /// that was, and what the shading took.
     fn shade_quads(
         &self,
         rect: &Rect,
@@ -237,11 +249,23 @@ impl Painter<'_> {
             for quads in block.chunk_by(|a, b| a.material == b.material) {
                 colors.clear();
                 let start = (self.clock)();
-                shade(&QuadBlock { material: quads[0].material as usize, tile: rect.min, quads, planes }, colors);
+                shade(
+                    &QuadBlock {
+                        material: quads[0].material as usize,
+                        tile: rect.min,
+                        quads,
+                        planes,
+                    },
+                    colors,
+                );
                 shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {
                     let is_whole = pair.iter().all(|quad| self.is_whole(quad));
-                    num_shaded += if is_whole { canvas.set(pair, color) } else { canvas.add(pair, share, color) };
+                    num_shaded += if is_whole {
+                        canvas.set(pair, color)
+                    } else {
+                        canvas.add(pair, share, color)
+                    };
                 }
             }
         }

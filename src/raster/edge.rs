@@ -1,12 +1,15 @@
-//! Coverage of one triangle by edge functions, in whole numbers: exact, and each sample of a mesh belongs to one triangle.
+//! Coverage of one triangle by edge functions, in whole numbers: exact, and each sample of a mesh
+//! belongs to one triangle.
 //!
-//! For an edge from `p` to `q`, `E(x, y) = a x + b y + c` with `a = p.y - q.y`, `b = q.x - p.x` (1/256 pixel) is positive
-//! inside. A sample on an edge belongs to the triangle if the edge is a left one (`a > 0`) or a top one (`a = 0, b > 0`);
-//! other edges take 1 off `c`, so that inside is `E >= 0` (the top-left fill rule).
+//! For an edge from `p` to `q`, `E(x, y) = a x + b y + c` with `a = p.y - q.y`, `b = q.x - p.x`
+//! (1/256 pixel) is positive inside. A sample on an edge belongs to the triangle if the edge is a
+//! left one (`a > 0`) or a top one (`a = 0, b > 0`); other edges take 1 off `c`, so that inside is
+//! `E >= 0` (the top-left fill rule).
 //!
-//! At samples, `x = 256 column + offset`: `E = 256 (a column + b row) + e`, and `floor(E / 256) = a column + b row + floor(e / 256)`
-//! has the same sign. That quotient fits 32 bits wherever an edge crosses a block of 8x8 pixels: `|a|, |b| < 2^26`, and within
-//! the block it varies by at most `14 * 2^26`. Blocks that an edge does not cross are decided by their corners in 64 bits.
+//! At samples, `x = 256 column + offset`: `E = 256 (a column + b row) + e`, and `floor(E / 256) = a
+//! column + b row + floor(e / 256)` has the same sign. That quotient fits 32 bits wherever an edge
+//! crosses a block of 8x8 pixels: `|a|, |b| < 2^26`, and within the block it varies by at most `14
+//! * 2^26`. Blocks that an edge does not cross are decided by their corners in 64 bits.
 
 use crate::simd::i32x8;
 
@@ -67,13 +70,15 @@ impl<const S: usize> Edges<S> {
             let c = -(a_wide * i64::from(p[0]) + b_wide * i64::from(p[1])) - i64::from(!owns_edge);
             (edges.a[i], edges.b[i]) = (a, b);
             for (of_sample, offset) in edges.c.iter_mut().zip(offsets) {
-                of_sample[i] = (a_wide * i64::from(offset[0]) + b_wide * i64::from(offset[1]) + c) >> 8;
+                of_sample[i] =
+                    (a_wide * i64::from(offset[0]) + b_wide * i64::from(offset[1]) + c) >> 8;
             }
         }
         edges
     }
 
-    /// Whether no sample of the rectangle is inside; may say no where that is so, never yes where it is not.
+    /// Whether no sample of the rectangle is inside; may say no where that is so, never yes where
+    /// it is not.
     #[must_use]
     #[inline]
     pub fn misses(&self, rect: &Rect) -> bool {
@@ -85,8 +90,9 @@ impl<const S: usize> Edges<S> {
         })
     }
 
-    /// Calls `sink` for every eight pixels of `rect` with a covered sample, or one on blocks that edges cross.
-    /// `rect` should be no larger than the triangle's bounds; its columns are widened to whole blocks.
+    /// Calls `sink` for every eight pixels of `rect` with a covered sample, or one on blocks that
+    /// edges cross. `rect` should be no larger than the triangle's bounds; its columns are widened
+    /// to whole blocks.
     #[inline(always)]
     pub fn cover(&self, rect: &Rect, sink: &mut impl FnMut(Row)) {
         let [x0, y0] = rect.min.map(|v| v & -BLOCK);
@@ -101,12 +107,19 @@ impl<const S: usize> Edges<S> {
     }
 
     #[inline(always)]
-    fn cover_block(&self, sample: usize, [x, y]: [i32; 2], rows: [i32; 2], sink: &mut impl FnMut(Row)) {
+    fn cover_block(
+        &self,
+        sample: usize,
+        [x, y]: [i32; 2],
+        rows: [i32; 2],
+        sink: &mut impl FnMut(Row),
+    ) {
         let mut crossing = [(0, 0, 0); 3];
         let mut is_crossed = false;
         for (i, crossing) in crossing.iter_mut().enumerate() {
             let (a, b) = (self.a[i], self.b[i]);
-            let corner = self.c[sample][i] + i64::from(a) * i64::from(x) + i64::from(b) * i64::from(y);
+            let corner =
+                self.c[sample][i] + i64::from(a) * i64::from(x) + i64::from(b) * i64::from(y);
             let (step_a, step_b) = (i64::from(a) * 7, i64::from(b) * 7);
             if corner + step_a.max(0) + step_b.max(0) < 0 {
                 return;
@@ -123,7 +136,8 @@ impl<const S: usize> Edges<S> {
             return;
         }
         let lanes = i32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
-        let first = crossing.map(|(a, b, c)| lanes * i32x8::splat(a) + i32x8::splat(c + b * (rows[0] - y)));
+        let first =
+            crossing.map(|(a, b, c)| lanes * i32x8::splat(a) + i32x8::splat(c + b * (rows[0] - y)));
         let step = crossing.map(|(_, b, _)| i32x8::splat(b));
         let mut values = first;
         for y in rows[0]..rows[1] {

@@ -1,7 +1,8 @@
-//! Visibility to quads: each triangle that a 2x2 quad of pixels sees is listed once, with its coverage.
+//! Visibility to quads: each triangle that a 2x2 quad of pixels sees is listed once, with its
+//! coverage.
 //!
-//! Quads start on even columns and rows of the frame. Those of one quad come in the order of their triangles, so that
-//! a pixel's sum does not depend on the tiling.
+//! Quads start on even columns and rows of the frame. Those of one quad come in the order of their
+//! triangles, so that a pixel's sum does not depend on the tiling.
 
 use super::grid::SHADED_BLOCK;
 use super::tile::{NONE, VisibilityBuffer};
@@ -20,7 +21,8 @@ pub(super) struct SeenQuad {
     pub(super) material: u32,
 }
 
-/// Rows of a part of a block: each is as wide as a lane vector, and neighbours in the list are neighbours on the screen.
+/// Rows of a part of a block: each is as wide as a lane vector, and neighbours in the list are
+/// neighbours on the screen.
 const PART: usize = 8;
 
 /// Lists what `buffer` sees, block by block, part by part and quad by quad.
@@ -29,16 +31,24 @@ pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<S
     let [num_columns, num_rows] = buffer.size();
     for (column, start) in parts(num_columns, num_rows) {
         for row in (start..num_rows.min(start + PART)).step_by(2) {
-            let pixels: [[u32x8; 2]; S] =
-                std::array::from_fn(|s| [buffer.triangles(s, column, row), buffer.triangles(s, column, row + 1)]);
+            let pixels: [[u32x8; 2]; S] = std::array::from_fn(|s| {
+                [buffer.triangles(s, column, row), buffer.triangles(s, column, row + 1)]
+            });
             let first = pixels[0][0].as_array()[0];
-            let differs = pixels.iter().flatten().fold(u32x8::ZERO, |all, p| all | (*p ^ u32x8::splat(first)));
+            let differs = pixels
+                .iter()
+                .flatten()
+                .fold(u32x8::ZERO, |all, p| all | (*p ^ u32x8::splat(first)));
             let origin = |quad: usize| [(column * PART + quad * 2) as u16, row as u16];
             if differs != u32x8::ZERO {
                 (0..4).for_each(|quad| gather_quad(&pixels, quad, origin(quad), seen));
             } else if first != NONE {
-                let whole =
-                    |quad| SeenQuad { triangle: first, origin: origin(quad), coverage: [S as u8; 4], material: 0 };
+                let whole = |quad| SeenQuad {
+                    triangle: first,
+                    origin: origin(quad),
+                    coverage: [S as u8; 4],
+                    material: 0,
+                };
                 seen.extend((0..4).map(whole));
             }
         }
@@ -48,7 +58,8 @@ pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<S
 /// The lane column and the first row of each part, block by block.
 fn parts(num_columns: usize, num_rows: usize) -> impl Iterator<Item = (usize, usize)> {
     const ACROSS: usize = SHADED_BLOCK / PART;
-    let [blocks_across, blocks_down] = [num_columns, num_rows.div_ceil(PART)].map(|parts| parts.div_ceil(ACROSS));
+    let [blocks_across, blocks_down] =
+        [num_columns, num_rows.div_ceil(PART)].map(|parts| parts.div_ceil(ACROSS));
     (0..blocks_across * blocks_down * ACROSS * ACROSS)
         .map(move |i| {
             let (block, part) = (i / (ACROSS * ACROSS), i % (ACROSS * ACROSS));
@@ -60,7 +71,12 @@ fn parts(num_columns: usize, num_rows: usize) -> impl Iterator<Item = (usize, us
 
 /// Lists the triangles of one quad of two rows of eight pixels, in order.
 #[inline(always)]
-fn gather_quad<const S: usize>(pixels: &[[u32x8; 2]; S], quad: usize, origin: [u16; 2], seen: &mut Vec<SeenQuad>) {
+fn gather_quad<const S: usize>(
+    pixels: &[[u32x8; 2]; S],
+    quad: usize,
+    origin: [u16; 2],
+    seen: &mut Vec<SeenQuad>,
+) {
     let start = seen.len();
     for rows in pixels {
         for lane in 0..4 {

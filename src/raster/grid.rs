@@ -14,7 +14,8 @@ use crate::settings::{Region, Settings};
 /// Side of a block of shading in pixels; blocks lie on multiples of it in the frame.
 pub const SHADED_BLOCK: usize = 16;
 
-/// What a part of a frame is widened to: blocks of coverage and of shading lie where they do in the whole frame.
+/// What a part of a frame is widened to: blocks of coverage and of shading lie where they do in the
+/// whole frame.
 const ALIGNED: i32 = if SHADED_BLOCK as i32 > BLOCK { SHADED_BLOCK as i32 } else { BLOCK };
 
 /// The tiles of a frame, or of a part of it.
@@ -24,7 +25,8 @@ pub struct TileGrid {
     pub tile_size: i32,
     /// Columns and rows of tiles.
     pub num_tiles: [i32; 2],
-    /// The pixels that the tiles cover: the region of the settings, widened to whole blocks within the frame.
+    /// The pixels that the tiles cover: the region of the settings, widened to whole blocks within
+    /// the frame.
     pub area: Rect,
     /// Least and largest offset of a sample from its pixel's corner in 1/256 pixel.
     pub offset_bounds: [i32; 2],
@@ -36,7 +38,10 @@ impl TileGrid {
         let Region { x, y, width, height } = settings.drawn();
         let frame = [settings.width as i32, settings.height as i32];
         let ends = [x + width, y + height].map(|end| (end as i32 + ALIGNED - 1) & -ALIGNED);
-        let area = Rect { min: [x, y].map(|v| v as i32 & -ALIGNED), max: [0, 1].map(|i| ends[i].min(frame[i])) };
+        let area = Rect {
+            min: [x, y].map(|v| v as i32 & -ALIGNED),
+            max: [0, 1].map(|i| ends[i].min(frame[i])),
+        };
         // What a block of shading sees of a material is drawn at once.
         let tile_size = settings.tile_size.max(SHADED_BLOCK as u32) as i32;
         let num_tiles = area.size().map(|s| (s + tile_size - 1) / tile_size);
@@ -57,8 +62,8 @@ impl TileGrid {
     }
 }
 
-/// The pixels within `rect` of which a sample may lie in the triangle's bounding box; empty ones have `max <= min`.
-/// `least` and `most` bound the samples' offsets.
+/// The pixels within `rect` of which a sample may lie in the triangle's bounding box; empty ones
+/// have `max <= min`. `least` and `most` bound the samples' offsets.
 #[inline]
 pub(super) fn bounds(triangle: &ScreenTriangle, rect: &Rect, [least, most]: [i32; 2]) -> Rect {
     let [a, b, c] = triangle.corners;

@@ -1,12 +1,15 @@
-//! Screen triangles to quads: edge functions and fill rule, bins, tiles, and quads with their attributes.
+//! Screen triangles to quads: edge functions and fill rule, bins, tiles, and quads with their
+//! attributes.
 //!
-//! A frame is drawn in four steps. [`Bins`] lists each tile's triangles. A tile finds out what each of its samples sees
-//! (edge functions, depth). The quads of 2x2 pixels that see a triangle are listed, once for each triangle, sorted by
-//! material. Two by two they are shaded, and their colours are added to the tile's pixels by the share of samples that
-//! see them. The background fills what share is left.
+//! A frame is drawn in four steps. [`Bins`] lists each tile's triangles. A tile finds out what each
+//! of its samples sees (edge functions, depth). The quads of 2x2 pixels that see a triangle are
+//! listed, once for each triangle, sorted by material. Two by two they are shaded, and their
+//! colours are added to the tile's pixels by the share of samples that see them. The background
+//! fills what share is left.
 //!
-//! The picture does not depend on tile size or threads: coverage is exact, quads lie on even pixels of the frame, every
-//! lane is computed alone, and a pixel's shares are summed by material and then by triangle.
+//! The picture does not depend on tile size or threads: coverage is exact, quads lie on even pixels
+//! of the frame, every lane is computed alone, and a pixel's shares are summed by material and then
+//! by triangle.
 
 mod attributes;
 mod bin;

@@ -7,8 +7,8 @@ use super::tile::cover;
 use crate::geometry::Geometry;
 use crate::settings::Settings;
 
-/// How often each pixel's samples are covered, without depth: a sum over the samples of each pixel of the grid's area,
-/// cut off at 255. What tests of coverage look at, and what shows overdraw.
+/// How often each pixel's samples are covered, without depth: a sum over the samples of each pixel
+/// of the grid's area, cut off at 255. What tests of coverage look at, and what shows overdraw.
 pub fn hit_counts(geometry: &Geometry, settings: &Settings) -> Vec<u8> {
     match settings.msaa {
         8 => count_hits::<8>(geometry, settings),
@@ -31,10 +31,13 @@ fn count_hits<const S: usize>(geometry: &Geometry, settings: &Settings) -> Vec<u
         for &index in &list {
             let triangle = geometry.triangle(index);
             cover::<S>(triangle, &bounds(triangle, &rect, grid.offset_bounds), &mut |row: Row| {
-                let [x, y] = [row.x - grid.area.min[0], row.y - grid.area.min[1]].map(|v| v as usize);
+                let [x, y] =
+                    [row.x - grid.area.min[0], row.y - grid.area.min[1]].map(|v| v as usize);
                 let start = y * width + x;
                 let num = (rect.max[0] - row.x).min(8) as usize;
-                for (count, is_covered) in counts[start..start + num].iter_mut().zip(row.mask.to_array()) {
+                for (count, is_covered) in
+                    counts[start..start + num].iter_mut().zip(row.mask.to_array())
+                {
                     *count = count.saturating_add((is_covered & 1) as u8);
                 }
             });

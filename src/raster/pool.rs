@@ -3,7 +3,8 @@
 use std::ops::{Deref, DerefMut};
 use std::sync::{Mutex, PoisonError};
 
-/// As many buffers as tasks ever ran at once. They have grown to what is needed after the first few.
+/// As many buffers as tasks ever ran at once. They have grown to what is needed after the first
+/// few.
 #[derive(Debug)]
 pub struct Pool<T>(Mutex<Vec<T>>);
 

@@ -1,8 +1,10 @@
-//! The hand-over from the rasterizer to relief and filter: two 2x2 quads with perspective-correct attributes.
+//! The hand-over from the rasterizer to relief and filter: two 2x2 quads with perspective-correct
+//! attributes.
 //!
-//! An attribute `a` of a triangle is `a(x, y) = (a/w)(x, y) / (1/w)(x, y)`, and both are linear on the screen. Every lane
-//! is `(c0 x + c1 y + c2) * (1 / inverse_w)`, whether its quad stands alone, in a pair, or among eight places of a pixel,
-//! so its bits depend on the place and the triangle only.
+//! An attribute `a` of a triangle is `a(x, y) = (a/w)(x, y) / (1/w)(x, y)`, and both are linear on
+//! the screen. Every lane is `(c0 x + c1 y + c2) * (1 / inverse_w)`, whether its quad stands alone,
+//! in a pair, or among eight places of a pixel, so its bits depend on the place and the triangle
+//! only.
 
 pub use crate::geometry::Plane;
 use crate::simd::{PixelLanes, set_bits};
@@ -14,8 +16,9 @@ pub struct AttributePlanes {
     pub inverse_w: Plane,
     /// Texture coordinates over w.
     pub uv: [Plane; 2],
-    /// The ray from the eye in the texture frame over w: `(alpha, beta, gamma)` of
-    /// `ray = alpha dP/du + beta dP/dv - gamma sqrt(|dP/du x dP/dv|) N`. `(0, 0, 1)` over w without texture coordinates.
+    /// The ray from the eye in the texture frame over w: `(alpha, beta, gamma)` of `ray = alpha
+    /// dP/du + beta dP/dv - gamma sqrt(|dP/du x dP/dv|) N`. `(0, 0, 1)` over w without texture
+    /// coordinates.
     pub view: [Plane; 3],
     /// World-space attributes; only kept under `Lighting::Lit`.
     pub lit: Option<Box<LitPlanes>>,
@@ -65,8 +68,9 @@ pub struct QuadPair<'a> {
 }
 
 impl AttributePlanes {
-    /// Texture coordinates and the view in the texture frame at eight places of the screen, in pixels. Where the triangle's
-    /// plane lies beyond its horizon they may be anything, infinite and NaN included.
+    /// Texture coordinates and the view in the texture frame at eight places of the screen, in
+    /// pixels. Where the triangle's plane lies beyond its horizon they may be anything, infinite
+    /// and NaN included.
     #[inline]
     pub fn at(&self, x: PixelLanes, y: PixelLanes) -> ([PixelLanes; 2], [PixelLanes; 3]) {
         let at = Places::<true> { x, y, planes: [self, self] };
@@ -78,7 +82,12 @@ impl AttributePlanes {
 impl<'a> QuadPair<'a> {
     /// Two quads with their attributes at the pixel centres.
     #[inline(always)]
-    pub fn new(material: usize, origin: [[i32; 2]; 2], coverage: [u8; 8], planes: [&'a AttributePlanes; 2]) -> Self {
+    pub fn new(
+        material: usize,
+        origin: [[i32; 2]; 2],
+        coverage: [u8; 8],
+        planes: [&'a AttributePlanes; 2],
+    ) -> Self {
         let [x, y] = centers(origin);
         // As most are where triangles are large.
         let (w, uv) = if std::ptr::eq(planes[0], planes[1]) {
@@ -89,7 +98,8 @@ impl<'a> QuadPair<'a> {
         Self { material, origin, coverage, planes, w, uv }
     }
 
-    /// The ray from the eye in the texture frame at the pixel centres (see [`AttributePlanes::view`]).
+    /// The ray from the eye in the texture frame at the pixel centres (see
+    /// [`AttributePlanes::view`]).
     #[inline(always)]
     pub fn view(&self) -> [PixelLanes; 3] {
         let [x, y] = self.centers();
@@ -99,10 +109,12 @@ impl<'a> QuadPair<'a> {
     /// A bit for each lane whose pixel sees the triangle.
     #[inline(always)]
     pub fn covered_bits(&self) -> u8 {
-        // A byte is at most 8, so nothing is carried to the next one: its highest bit says whether it is above 0.
-        let is_covered =
-            (u64::from_le_bytes([0x7f; 8]) + u64::from_le_bytes(self.coverage)) & u64::from_le_bytes([0x80; 8]);
-        // Bit 8 i + 7 of the product's factor moves to bit 56 + i: one set bit of the other, 49 - 7 i, for each byte.
+        // A byte is at most 8, so nothing is carried to the next one: its highest bit says whether
+        // it is above 0.
+        let is_covered = (u64::from_le_bytes([0x7f; 8]) + u64::from_le_bytes(self.coverage))
+            & u64::from_le_bytes([0x80; 8]);
+        // Bit 8 i + 7 of the product's factor moves to bit 56 + i: one set bit of the other, 49 - 7
+        // i, for each byte.
         (is_covered.wrapping_mul(0x0002_0408_1020_4081) >> 56) as u8
     }
 
@@ -162,7 +174,8 @@ impl<const IS_ONE: bool> Places<'_, IS_ONE> {
 
     #[inline(always)]
     fn value(&self, [a, b]: [Plane; 2]) -> PixelLanes {
-        let [c0, c1, c2] = [0, 1, 2].map(|i| if IS_ONE { PixelLanes::splat(a[i]) } else { halves(a[i], b[i]) });
+        let [c0, c1, c2] =
+            [0, 1, 2].map(|i| if IS_ONE { PixelLanes::splat(a[i]) } else { halves(a[i], b[i]) });
         c0 * self.x + c1 * self.y + c2
     }
 

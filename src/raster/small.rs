@@ -1,9 +1,11 @@
-//! Edge functions of small triangles, as [`Edges`](super::edge::Edges) has them, in 32 bits and without blocks.
+//! Edge functions of small triangles, as [`Edges`](super::edge::Edges) has them, in 32 bits and
+//! without blocks.
 
 use super::edge::{BLOCK, Rect, Row};
 use crate::simd::i32x8;
 
-/// Largest side of the bounding box in 1/256 pixel: 16 pixels. Products with places up to a block beyond it stay below 2^26.
+/// Largest side of the bounding box in 1/256 pixel: 16 pixels. Products with places up to a block
+/// beyond it stay below 2^26.
 const MOST: i32 = 16 << 8;
 
 /// The edge functions of a small triangle, in squares of 1/256 pixel.
@@ -34,8 +36,8 @@ impl SmallEdges {
         }
     }
 
-    /// Calls `sink` for rows of eight pixels within `bounds`, as [`Edges::cover`](super::edge::Edges::cover) does, and for
-    /// some that are not covered at all.
+    /// Calls `sink` for rows of eight pixels within `bounds`, as
+    /// [`Edges::cover`](super::edge::Edges::cover) does, and for some that are not covered at all.
     #[inline(always)]
     pub(super) fn cover(&self, offsets: &[[i32; 2]], bounds: &Rect, sink: &mut impl FnMut(Row)) {
         for (sample, offset) in offsets.iter().enumerate() {
@@ -58,7 +60,8 @@ impl SmallEdges {
         std::array::from_fn(|i| {
             let ([a, b], p) = (slopes[i], self.corners[i]);
             let owns_edge = a > 0 || (a == 0 && b > 0);
-            let first = a * (x * 256 + offset[0] - p[0]) + b * (y * 256 + offset[1] - p[1]) - i32::from(!owns_edge);
+            let first = a * (x * 256 + offset[0] - p[0]) + b * (y * 256 + offset[1] - p[1])
+                - i32::from(!owns_edge);
             self.along[i] + i32x8::splat(first)
         })
     }
@@ -96,8 +99,8 @@ mod tests {
             let size = random(MOST / unit);
             let mut corner = || [0, 1].map(|i| origin[i] + random(size) * unit);
             let [a, b, c] = [corner(), corner(), corner()];
-            let area =
-                i64::from(b[0] - a[0]) * i64::from(c[1] - a[1]) - i64::from(b[1] - a[1]) * i64::from(c[0] - a[0]);
+            let area = i64::from(b[0] - a[0]) * i64::from(c[1] - a[1])
+                - i64::from(b[1] - a[1]) * i64::from(c[0] - a[0]);
             let corners = if area < 0 { [a, c, b] } else { [a, b, c] };
             if area == 0 || !SmallEdges::suit(&corners) {
                 continue;
@@ -110,7 +113,11 @@ mod tests {
             });
             SmallEdges::new(&corners).cover(offsets, &rect, &mut |Row { sample, x, y, mask }| {
                 let found = mask.to_array();
-                assert_eq!(found, expected.get(&(sample, x, y)).copied().unwrap_or_default(), "{corners:?}");
+                assert_eq!(
+                    found,
+                    expected.get(&(sample, x, y)).copied().unwrap_or_default(),
+                    "{corners:?}"
+                );
                 num_covered += found.iter().filter(|lane| **lane != 0).count();
             });
         }

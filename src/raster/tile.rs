@@ -1,8 +1,9 @@
 //! Visibility of one tile: which triangle each sample sees, by depth.
 //!
-//! The buffers hold, sample by sample and row by row, eight pixels a lane vector: the nearest 1 / w, and the triangle's
-//! *local index*, its place in the tile's list. Lists are in the triangles' order, so the smaller local index is the
-//! earlier triangle, and it stays where depths are equal. All pieces of a clipped triangle go by the first one's index.
+//! The buffers hold, sample by sample and row by row, eight pixels a lane vector: the nearest 1 /
+//! w, and the triangle's *local index*, its place in the tile's list. Lists are in the triangles'
+//! order, so the smaller local index is the earlier triangle, and it stays where depths are equal.
+//! All pieces of a clipped triangle go by the first one's index.
 
 use super::edge::{Edges, Rect, Row};
 use super::grid::bounds;
@@ -24,14 +25,17 @@ pub(super) struct VisibilityBuffer {
     num_rows: usize,
     inverse_w: Vec<f32x8>,
     triangles: Vec<u32x8>,
-    /// Depth of the farthest sample when last scanned; anything behind it is hidden: [`FARTHEST`] while a sample sees nothing.
+    /// Depth of the farthest sample when last scanned; anything behind it is hidden: [`FARTHEST`]
+    /// while a sample sees nothing.
     hidden: f32,
 }
 
-/// Triangles of a tile after which what they hide is looked for, again after twice as many, and so on.
+/// Triangles of a tile after which what they hide is looked for, again after twice as many, and so
+/// on.
 const FIRST_LOOK: usize = 32;
 
-/// What 1 / w may be off by as a sample has it and as a corner has it, as a share of the plane's terms.
+/// What 1 / w may be off by as a sample has it and as a corner has it, as a share of the plane's
+/// terms.
 const ROUNDING: f32 = 1.0 / (1 << 20) as f32;
 
 impl VisibilityBuffer {
@@ -74,7 +78,10 @@ impl VisibilityBuffer {
     /// The least 1 / w that is stored.
     #[inline(never)]
     fn farthest(&self) -> f32 {
-        let least = self.inverse_w.iter().fold(f32x8::splat(f32::INFINITY), |least, row| least.fast_min(*row));
+        let least = self
+            .inverse_w
+            .iter()
+            .fold(f32x8::splat(f32::INFINITY), |least, row| least.fast_min(*row));
         least.to_array().into_iter().fold(f32::INFINITY, f32::min)
     }
 
@@ -96,7 +103,8 @@ impl VisibilityBuffer {
         if num_inside == 0 {
             return;
         }
-        let is_beyond: [u32; 8] = std::array::from_fn(|lane| if lane as i32 >= num_inside { NONE } else { 0 });
+        let is_beyond: [u32; 8] =
+            std::array::from_fn(|lane| if lane as i32 >= num_inside { NONE } else { 0 });
         for row in 1..=self.num_rows * num_samples {
             let last = &mut self.triangles[row * self.num_columns - 1];
             *last |= u32x8::new(is_beyond);
@@ -104,16 +112,26 @@ impl VisibilityBuffer {
     }
 
     #[inline]
-    fn draw_triangle<const S: usize>(&mut self, triangle: &ScreenTriangle, index: u32, rect: &Rect) {
+    fn draw_triangle<const S: usize>(
+        &mut self,
+        triangle: &ScreenTriangle,
+        index: u32,
+        rect: &Rect,
+    ) {
         let offsets = sample_offsets(S as u32);
         let [dx, dy, constant] = triangle.depth;
         let index = u32x8::splat(index);
         cover::<S>(triangle, &bounds(triangle, rect, offset_bounds(S as u32)), &mut |row: Row| {
-            let [offset_x, offset_y] = offsets[row.sample].map(|offset| offset as f32 * (1.0 / 256.0));
+            let [offset_x, offset_y] =
+                offsets[row.sample].map(|offset| offset as f32 * (1.0 / 256.0));
             let x = lane_indices() + f32x8::splat(row.x as f32 + offset_x);
             let y = row.y as f32 + offset_y;
             let inverse_w = x * f32x8::splat(dx) + f32x8::splat(y * dy) + f32x8::splat(constant);
-            let at = self.at(row.sample, (row.x - self.origin[0]) as usize / 8, (row.y - self.origin[1]) as usize);
+            let at = self.at(
+                row.sample,
+                (row.x - self.origin[0]) as usize / 8,
+                (row.y - self.origin[1]) as usize,
+            );
             self.test(at, inverse_w, row.mask, index);
         });
     }
@@ -144,10 +162,14 @@ impl VisibilityBuffer {
     }
 }
 
-/// Calls `sink` for the rows of eight pixels within `bounds` of which a sample may be covered. Most triangles are small, and
-/// what [`Edges`] prepares would take longer than their rows themselves.
+/// Calls `sink` for the rows of eight pixels within `bounds` of which a sample may be covered. Most
+/// triangles are small, and what [`Edges`] prepares would take longer than their rows themselves.
 #[inline(always)]
-pub(super) fn cover<const S: usize>(triangle: &ScreenTriangle, bounds: &Rect, sink: &mut impl FnMut(Row)) {
+pub(super) fn cover<const S: usize>(
+    triangle: &ScreenTriangle,
+    bounds: &Rect,
+    sink: &mut impl FnMut(Row),
+) {
     let offsets = sample_offsets(S as u32);
     if SmallEdges::suit(&triangle.corners) {
         SmallEdges::new(&triangle.corners).cover(offsets, bounds, sink);

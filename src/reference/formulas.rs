@@ -2,7 +2,8 @@
 
 use crate::settings::{Derivatives, FootprintRule, Formulas};
 
-/// `[du/dx, dv/dx, du/dy, dv/dy]` from coordinates `[u, v]` and relief offsets at (x, y), (x+1, y) and (x, y+1).
+/// `[du/dx, dv/dx, du/dy, dv/dy]` from coordinates `[u, v]` and relief offsets at (x, y), (x+1, y)
+/// and (x, y+1).
 ///
 /// The letters are the paper's: offsets (m, r) at (x, y), (n, o) at (x+1, y), (p, s) at (x, y+1).
 #[must_use]
@@ -10,11 +11,18 @@ pub fn derivatives(uv: [[f32; 2]; 3], offsets: [[f32; 2]; 3], rule: &FootprintRu
     let [[u, v], [u_right, v_right], [u_below, v_below]] = uv;
     let [[m, r], [n, o], [p, s]] = offsets;
     match (rule.derivatives, rule.formulas) {
-        (Derivatives::Flat, Formulas::Meant) => [u_right - u, v_right - v, u_below - u, v_below - v],
-        (Derivatives::Flat, Formulas::Printed) => [u_right - u, v_right - u, u_below - u, v_below - u],
-        (Derivatives::Relief, Formulas::Meant) => {
-            [(u_right + n) - (u + m), (v_right + o) - (v + r), (u_below + p) - (u + m), (v_below + s) - (v + r)]
+        (Derivatives::Flat, Formulas::Meant) => {
+            [u_right - u, v_right - v, u_below - u, v_below - v]
         }
+        (Derivatives::Flat, Formulas::Printed) => {
+            [u_right - u, v_right - u, u_below - u, v_below - u]
+        }
+        (Derivatives::Relief, Formulas::Meant) => [
+            (u_right + n) - (u + m),
+            (v_right + o) - (v + r),
+            (u_below + p) - (u + m),
+            (v_below + s) - (v + r),
+        ],
         (Derivatives::Relief, Formulas::Printed) => {
             [u_right + n - u + m, v_right + o - u + m, u_below + p - v + r, v_below + s - v + r]
         }
@@ -45,9 +53,11 @@ impl Conic {
         Self { a: vx * vx + vy * vy, b: -2.0 * (ux * vx + uy * vy), c: ux * ux + uy * uy, f }
     }
 
-    /// With `kernel` added to A and C, and the shorter axis at least `least` and the longer over `max_anisotropy`.
+    /// With `kernel` added to A and C, and the shorter axis at least `least` and the longer over
+    /// `max_anisotropy`.
     ///
-    /// The axes squared are the eigenvalues of `[[C, -B/2], [-B/2, A]]`; the shorter grows along its eigenvector.
+    /// The axes squared are the eigenvalues of `[[C, -B/2], [-B/2, A]]`; the shorter grows along
+    /// its eigenvector.
     #[must_use]
     pub fn widened(self, kernel: f64, max_anisotropy: f64, least: f64) -> Self {
         let (a, b, c) = (self.a + kernel, self.b, self.c + kernel);

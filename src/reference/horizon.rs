@@ -1,8 +1,9 @@
 //! The floating horizon, line by line.
 //!
-//! A line at `xi` across runs along the displacement `D`; texel rows cross it at whole places. Row i lies at `eta_i` along
-//! the line, from the middle of the ellipse, and is seen over `p_i = eta_i - d_i |D|`. The line's part of the kernel is
-//! `exp(-2 r^2)`, `r^2 = r0^2 + C' (eta - eta0)^2`, and the eye sees what makes a new record of `p`.
+//! A line at `xi` across runs along the displacement `D`; texel rows cross it at whole places. Row
+//! i lies at `eta_i` along the line, from the middle of the ellipse, and is seen over `p_i = eta_i
+//! - d_i |D|`. The line's part of the kernel is `exp(-2 r^2)`, `r^2 = r0^2 + C' (eta - eta0)^2`,
+//! and the eye sees what makes a new record of `p`.
 
 use super::formulas::Conic;
 use super::stored::{color, exp_negative, height, integral};
@@ -58,7 +59,8 @@ impl Lines<'_> {
         })
     }
 
-    /// Whether a texel makes a new record on the line through the ellipse's middle, which must be the texel's centre.
+    /// Whether a texel makes a new record on the line through the ellipse's middle, which must be
+    /// the texel's centre.
     #[must_use]
     pub fn is_record(&self, texel: [i32; 2]) -> bool {
         let own = -(1.0 - height(self.level, texel)) * self.depth().abs();
@@ -79,7 +81,8 @@ impl Lines<'_> {
         self.displacement.iter().all(|d| d.abs() < 1.0 / 64.0)
     }
 
-    /// Whether lines run along x: the longer axis of the displacement, or of the ellipse where there is none.
+    /// Whether lines run along x: the longer axis of the displacement, or of the ellipse where
+    /// there is none.
     fn is_turned(&self) -> bool {
         let [dx, dy] = self.displacement.map(f64::abs);
         if self.is_flat() { self.conic.a < self.conic.c } else { dx > dy }
@@ -119,7 +122,8 @@ impl Lines<'_> {
         let y = (toward * y0).floor() + i as f64;
         let eta = y - toward * y0;
         let x = x0 + self.shear() * toward * eta + xi;
-        let texels = [0.0, 1.0].map(|far| self.turned([x.floor() + far, toward * y]).map(|c| c as i32));
+        let texels =
+            [0.0, 1.0].map(|far| self.turned([x.floor() + far, toward * y]).map(|c| c as i32));
         let (part, [near, far]) = (x - x.floor(), texels.map(|texel| height(self.level, texel)));
         let p = eta - (1.0 - (near + (far - near) * part)) * self.depth().abs();
         Crossing { p, texels, part }
@@ -143,8 +147,10 @@ impl Lines<'_> {
             let length = (record - horizon) / num_parts;
             for part in 0..num_parts as u32 {
                 let from = horizon + length * f64::from(part);
-                let weight = (integral_at(from + length) - integral_at(from)) * exp_negative(2.0 * r0);
-                let t = ((from + 0.5 * length - previous.p) / (next.p - previous.p)).clamp(0.0, 1.0);
+                let weight =
+                    (integral_at(from + length) - integral_at(from)) * exp_negative(2.0 * r0);
+                let t =
+                    ((from + 0.5 * length - previous.p) / (next.p - previous.p)).clamp(0.0, 1.0);
                 add(weights, &previous, weight * (1.0 - t));
                 add(weights, &next, weight * t);
             }
@@ -155,7 +161,8 @@ impl Lines<'_> {
 
 fn add(weights: &mut BTreeMap<[i32; 2], f64>, crossing: &Crossing, weight: f64) {
     let shares = [1.0 - crossing.part, crossing.part];
-    for (texel, share) in crossing.texels.into_iter().zip(shares).filter(|(_, share)| *share > 0.0) {
+    for (texel, share) in crossing.texels.into_iter().zip(shares).filter(|(_, share)| *share > 0.0)
+    {
         *weights.entry(texel).or_default() += weight * share;
     }
 }

@@ -1,12 +1,14 @@
-//! The scalar twin that the kernels are held against: the definitions of FILTER, one texel and one ray at a time, in f64.
+//! The scalar twin that the kernels are held against: the definitions of FILTER, one texel and one
+//! ray at a time, in f64.
 //!
 //! * `derivatives` and `Conic`: formulas (1), (2) and (3), as meant and as printed.
-//! * `texels`, `ray_margin`, `mean`: the texels T of an ellipse, which of them a ray to the eye leaves visible, and
-//!   the weighted mean of a set.
+//! * `texels`, `ray_margin`, `mean`: the texels T of an ellipse, which of them a ray to the eye
+//!   leaves visible, and the weighted mean of a set.
 //! * `Lines`: the floating horizon line by line, with the weight of every texel.
 //! * `first_hit`, `supersampled`: a dense march, and the value of a pixel by many rays.
 //!
-//! Short and slow on purpose. Shares with the kernels the packed texels, the ellipse's definition, and nothing else.
+//! Short and slow on purpose. Shares with the kernels the packed texels, the ellipse's definition,
+//! and nothing else.
 
 mod formulas;
 mod horizon;

@@ -4,7 +4,8 @@ use super::stored::{color, exp_negative, height};
 use crate::footprint::Footprint;
 use crate::texture::{Level, Surface};
 
-/// A view ray: from a base place along the displacement down to the deepest relief, both in texels of the base level.
+/// A view ray: from a base place along the displacement down to the deepest relief, both in texels
+/// of the base level.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
     /// Where it meets the polygon.
@@ -52,8 +53,9 @@ pub fn first_hit(level: &Level, ray: &Ray, steps: f64) -> f64 {
     below
 }
 
-/// The colour of a pixel by `2 side x 2 side` rays over the square around the disc of radius one pixel, each weighted with
-/// the kernel `exp(-2 r^2)`. The slope is the same for all; marches take two steps a texel, then halve.
+/// The colour of a pixel by `2 side x 2 side` rays over the square around the disc of radius one
+/// pixel, each weighted with the kernel `exp(-2 r^2)`. The slope is the same for all; marches take
+/// two steps a texel, then halve.
 #[must_use]
 pub fn supersampled(surface: &Surface, footprint: &Footprint, side: i32) -> [f64; 3] {
     let level = surface.base();

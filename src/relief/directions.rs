@@ -1,12 +1,14 @@
-//! A fan of displacements over which what is seen of a relief is tabled: lengths in geometric steps, azimuths around.
+//! A fan of displacements over which what is seen of a relief is tabled: lengths in geometric
+//! steps, azimuths around.
 
 use crate::texture::Surface;
 
-/// Slopes that are told apart, from gentle to grazing. A gentler one hides too little to matter in a large footprint; a
-/// steeper one counts as the last.
+/// Slopes that are told apart, from gentle to grazing. A gentler one hides too little to matter in
+/// a large footprint; a steeper one counts as the last.
 pub const SLOPES: [f32; 2] = [0.25, 28.0];
 
-/// Lengths of the displacement, in geometric steps over [`SLOPES`]: 1.54 times from one to the next.
+/// Lengths of the displacement, in geometric steps over [`SLOPES`]: 1.54 times from one to the
+/// next.
 pub const NUM_LENGTHS: usize = 12;
 
 /// The lengths of the displacements of one surface, in base texels.
@@ -52,7 +54,8 @@ pub fn pseudo_exp(y: f32) -> f32 {
     f32::from_bits(((whole as i32 + 127) as u32) << 23) * (1.0 + y - whole)
 }
 
-/// The angle of a direction as a number from 0 to 4 that grows evenly along the diamond `|x| + |y| = 1`.
+/// The angle of a direction as a number from 0 to 4 that grows evenly along the diamond `|x| + |y|
+/// = 1`.
 pub fn diamond_angle(x: f32, y: f32) -> f32 {
     let part = y / (x.abs() + y.abs()).max(f32::MIN_POSITIVE);
     let angle = if x < 0.0 {

@@ -2,8 +2,8 @@
 
 use crate::simd::PixelLanes;
 
-/// Steepest view slope: rays closer to the surface than one unit of depth in 64 along it are traced at that slope, so
-/// that the length of any walk over the relief is bounded.
+/// Steepest view slope: rays closer to the surface than one unit of depth in 64 along it are traced
+/// at that slope, so that the length of any walk over the relief is bounded.
 pub const MAX_SLOPE: f32 = 64.0;
 
 /// How far the view ray moves along the texture, in repeats, down to the deepest relief.
@@ -12,7 +12,8 @@ pub const MAX_SLOPE: f32 = 64.0;
 pub fn displacement(view: &[PixelLanes; 3], relief_depth: f32) -> [PixelLanes; 2] {
     let [alpha, beta, gamma] = *view;
     let along = (alpha * alpha + beta * beta).sqrt();
-    // A ray along the surface has gamma 0; the least value keeps the division finite where the ray is 0 altogether.
+    // A ray along the surface has gamma 0; the least value keeps the division finite where the ray
+    // is 0 altogether.
     let gamma = gamma.abs().max(along * (1.0 / MAX_SLOPE)).max(PixelLanes::splat(1e-30));
     let scale = PixelLanes::splat(relief_depth) / gamma;
     [finite(alpha * scale), finite(beta * scale)]

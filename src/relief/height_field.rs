@@ -1,9 +1,9 @@
 //! The base level's heights and a pyramid of their maxima.
 //!
-//! A *cell* spans four neighbouring texel centres; the relief in it is the bilinear patch of their heights. Cell
-//! `(i, j)` begins at the centre of texel `(i, j)`. A *node* of level k spans 2^k x 2^k cells (less at the far edges)
-//! and stores the greatest height in them: a ray above it passes the node without a hit. (Maximum mipmaps: Tevs,
-//! Ihrke, Seidel 2008.)
+//! A *cell* spans four neighbouring texel centres; the relief in it is the bilinear patch of their
+//! heights. Cell `(i, j)` begins at the centre of texel `(i, j)`. A *node* of level k spans 2^k x
+//! 2^k cells (less at the far edges) and stores the greatest height in them: a ray above it passes
+//! the node without a hit. (Maximum mipmaps: Tevs, Ihrke, Seidel 2008.)
 
 use crate::texture::{FULL_F32, Rows, Surface, Wrap};
 
@@ -59,13 +59,18 @@ impl HeightField {
         (exponent - 2).clamp(0, self.num_levels() - 1)
     }
 
-    /// The place of a cell in the stored pattern. Cells beyond the edges of a clamped pattern, where the relief is
-    /// level across the edge, are -1 and the last.
+    /// The place of a cell in the stored pattern. Cells beyond the edges of a clamped pattern,
+    /// where the relief is level across the edge, are -1 and the last.
     pub fn fold(&self, axis: usize, i: i32) -> i32 {
-        if self.is_clamped { i.clamp(-1, self.size[axis] - 1) } else { i.rem_euclid(self.size[axis]) }
+        if self.is_clamped {
+            i.clamp(-1, self.size[axis] - 1)
+        } else {
+            i.rem_euclid(self.size[axis])
+        }
     }
 
-    /// The heights, 0 to [`FULL`](crate::texture::FULL), at the corners of a folded cell: (0,0), (1,0), (0,1), (1,1).
+    /// The heights, 0 to [`FULL`](crate::texture::FULL), at the corners of a folded cell: (0,0),
+    /// (1,0), (0,1), (1,1).
     pub fn corners(&self, x: i32, y: i32) -> [f32; 4] {
         let above = match y + 1 == self.size[1] {
             true if self.is_clamped => y,
@@ -76,17 +81,21 @@ impl HeightField {
         [a as f32, b as f32, c as f32, d as f32]
     }
 
-    /// The greatest height, 0 to [`FULL`](crate::texture::FULL), in the node of level 1 or more that holds a folded cell.
+    /// The greatest height, 0 to [`FULL`](crate::texture::FULL), in the node of level 1 or more
+    /// that holds a folded cell.
     pub fn node_max(&self, level: i32, x: i32, y: i32) -> f32 {
         let nodes = &self.nodes[level as usize - 1];
-        f32::from(nodes.maxima[(y.max(0) >> level) as usize * nodes.width + (x.max(0) >> level) as usize])
+        f32::from(
+            nodes.maxima[(y.max(0) >> level) as usize * nodes.width + (x.max(0) >> level) as usize],
+        )
     }
 
     /// The bilinear height, 0 to 1, at a place in texels (texel centres lie at halves).
     pub fn height_at(&self, u: f64, v: f64) -> f64 {
         let (x, y) = ((u - 0.5).floor(), (v - 0.5).floor());
         let (fx, fy) = (u - 0.5 - x, v - 0.5 - y);
-        let [a, b, c, d] = self.corners(self.fold(0, x as i32), self.fold(1, y as i32)).map(f64::from);
+        let [a, b, c, d] =
+            self.corners(self.fold(0, x as i32), self.fold(1, y as i32)).map(f64::from);
         let (low, high) = (a + (b - a) * fx, c + (d - c) * fx);
         (low + (high - low) * fy) / f64::from(FULL_F32)
     }

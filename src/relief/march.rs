@@ -1,42 +1,54 @@
 //! The first hit of a view ray with the bilinear height field.
 //!
-//! The ray is at `b + t D` at the depth `t` (0 on the polygon, 1 deepest), where the relief's depth is `1 - h`. It
-//! descends the pyramid of maxima: a node whose greatest height stays under the ray is left at its far side, others are
-//! opened; in a cell the crossing of the ray with the bilinear patch, a quadratic in t, is solved. So no feature is
-//! stepped over, however thin. Eight rays are traced at once; a lane is a pixel.
+//! The ray is at `b + t D` at the depth `t` (0 on the polygon, 1 deepest), where the relief's depth
+//! is `1 - h`. It descends the pyramid of maxima: a node whose greatest height stays under the ray
+//! is left at its far side, others are opened; in a cell the crossing of the ray with the bilinear
+//! patch, a quadratic in t, is solved. So no feature is stepped over, however thin. Eight rays are
+//! traced at once; a lane is a pixel.
 
 use super::displacement::{MAX_SLOPE, finite};
 use super::height_field::HeightField;
 use crate::simd::{PixelLanes, as_unsigned, i32x8, lanes, mask};
 use crate::texture::FULL_F32;
 
-/// Most steps of a ray. A walk of 64 repeats over a map of any size that opens every node takes fewer in practice;
-/// the bound makes the time of a hostile input finite, and the ray then ends where it is.
+/// Most steps of a ray. A walk of 64 repeats over a map of any size that opens every node takes
+/// fewer in practice; the bound makes the time of a hostile input finite, and the ray then ends
+/// where it is.
 const MAX_STEPS: usize = 1 << 14;
 
-/// Most patterns from the first that a ray over a clamped map starts at: all beyond looks like its edge.
+/// Most patterns from the first that a ray over a clamped map starts at: all beyond looks like its
+/// edge.
 const FARTHEST: f32 = 128.0;
 
-/// Part of a texel, along the axis that it moves along fastest, that a ray is moved past a node's edge, so that rounding
-/// cannot keep it inside.
+/// Part of a texel, along the axis that it moves along fastest, that a ray is moved past a node's
+/// edge, so that rounding cannot keep it inside.
 const NUDGE: f32 = 1.0 / 1024.0;
 
 /// What an f32 just under 1 can be moved by.
 const LEAST_NUDGE: f32 = 1.0 / 8_388_608.0;
 
-/// The depth `t`, 0 to 1, of the first hit of the rays from `base` along `displacement`, both in repeats.
+/// The depth `t`, 0 to 1, of the first hit of the rays from `base` along `displacement`, both in
+/// repeats.
 #[must_use]
-pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelLanes; 2]) -> PixelLanes {
+pub fn march(
+    field: &HeightField,
+    base: &[PixelLanes; 2],
+    displacement: &[PixelLanes; 2],
+) -> PixelLanes {
     let [nu, nv] = field.texels_per_repeat;
     // Whole repeats are taken off first, so that far tiles keep their precision.
     let start = |b: PixelLanes, n: f32, size: i32| {
         let patterns = finite(b * (n / size as f32));
         let whole = if field.is_clamped { PixelLanes::ZERO } else { patterns.floor() };
-        (patterns - whole).fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST)) * size as f32
+        (patterns - whole)
+            .fast_max(PixelLanes::splat(-FARTHEST))
+            .fast_min(PixelLanes::splat(FARTHEST))
+            * size as f32
             - 0.5
     };
-    let bounded =
-        |d: PixelLanes| finite(d).fast_max(PixelLanes::splat(-MAX_SLOPE)).fast_min(PixelLanes::splat(MAX_SLOPE));
+    let bounded = |d: PixelLanes| {
+        finite(d).fast_max(PixelLanes::splat(-MAX_SLOPE)).fast_min(PixelLanes::splat(MAX_SLOPE))
+    };
     let step = [bounded(displacement[0]) * nu, bounded(displacement[1]) * nv];
     // Each ray's own, so that its hit does not depend on the rays beside it.
     let longest = step[0].abs().fast_max(step[1].abs());
@@ -46,7 +58,8 @@ pub fn march(field: &HeightField, base: &[PixelLanes; 2], displacement: &[PixelL
         step,
         inverse: step.map(|s| moves(s).select(PixelLanes::ONE / s, PixelLanes::ZERO)),
         late: step.map(|s| moves(s).select(PixelLanes::ZERO, PixelLanes::splat(2.0))),
-        nudge: (PixelLanes::splat(NUDGE) / longest.fast_max(PixelLanes::ONE)).fast_max(PixelLanes::splat(LEAST_NUDGE)),
+        nudge: (PixelLanes::splat(NUDGE) / longest.fast_max(PixelLanes::ONE))
+            .fast_max(PixelLanes::splat(LEAST_NUDGE)),
         depth: PixelLanes::ZERO,
         level: i32x8::new(level),
         parent: [i32x8::splat(i32::MIN); 2],
@@ -70,7 +83,8 @@ fn moves(step: PixelLanes) -> PixelLanes {
 struct Rays {
     start: [PixelLanes; 2],
     step: [PixelLanes; 2],
-    /// One over the step; 0 along an axis that a ray does not move along, which it leaves late: at a depth of 2.
+    /// One over the step; 0 along an axis that a ray does not move along, which it leaves late: at
+    /// a depth of 2.
     inverse: [PixelLanes; 2],
     late: [PixelLanes; 2],
     /// The depth that a ray is moved past a node's edge.
@@ -82,7 +96,8 @@ struct Rays {
     is_done: i32x8,
 }
 
-/// Where eight rays are: the cell, the same folded into the stored pattern, and the edges of its node.
+/// Where eight rays are: the cell, the same folded into the stored pattern, and the edges of its
+/// node.
 struct Nodes {
     cell: [PixelLanes; 2],
     folded: [i32x8; 2],
@@ -93,7 +108,8 @@ struct Nodes {
 impl Rays {
     /// Moves every ray by one node or one level.
     fn advance(&mut self, field: &HeightField) {
-        let place = [self.start[0] + self.step[0] * self.depth, self.start[1] + self.step[1] * self.depth];
+        let place =
+            [self.start[0] + self.step[0] * self.depth, self.start[1] + self.step[1] * self.depth];
         // A ray on the edge of a cell is in the one that it moves into.
         let cell = [0, 1].map(|axis| {
             let backwards = self.step[axis].simd_lt(PixelLanes::ZERO);
@@ -109,14 +125,20 @@ impl Rays {
         // The ray descends, so it is lowest where it leaves the node.
         let is_above = mask(leave.simd_lt(PixelLanes::ONE - heights));
         let is_open = is_cell & !self.is_done;
-        let hit = if is_open.any() { self.cell_hit(field, &place, &nodes, is_open) } else { PixelLanes::splat(2.0) };
+        let hit = if is_open.any() {
+            self.cell_hit(field, &place, &nodes, is_open)
+        } else {
+            PixelLanes::splat(2.0)
+        };
         // A crossing beyond the edge is the next node's.
         let is_hit = is_open & mask(hit.simd_le(exit));
         let is_passed = (is_cell | is_above) & !is_hit & !self.is_done;
         self.depth = lanes(is_hit).select(hit, lanes(is_passed).select(leave, self.depth));
         let up = as_unsigned(self.level + i32x8::splat(1));
-        self.parent = [0, 1].map(|axis| is_passed.select(nodes.folded[axis] >> up, i32x8::splat(i32::MIN)));
-        self.level = (is_passed | is_hit | self.is_done).select(self.level, self.level - i32x8::splat(1));
+        self.parent =
+            [0, 1].map(|axis| is_passed.select(nodes.folded[axis] >> up, i32x8::splat(i32::MIN)));
+        self.level =
+            (is_passed | is_hit | self.is_done).select(self.level, self.level - i32x8::splat(1));
         // At full depth every height is met.
         self.is_done = self.is_done | is_hit | mask(self.depth.simd_ge(PixelLanes::ONE));
     }
@@ -125,7 +147,8 @@ impl Rays {
     fn climb(&mut self, field: &HeightField, folded: &[i32x8; 2]) {
         let up = as_unsigned(self.level + i32x8::splat(1));
         let moved = !self.parent[0].simd_eq(i32x8::splat(i32::MIN));
-        let stays = self.parent[0].simd_eq(folded[0] >> up) & self.parent[1].simd_eq(folded[1] >> up);
+        let stays =
+            self.parent[0].simd_eq(folded[0] >> up) & self.parent[1].simd_eq(folded[1] >> up);
         let climbs = moved & !stays & self.level.simd_lt(i32x8::splat(field.num_levels() - 1));
         self.level = climbs.select(self.level + i32x8::splat(1), self.level);
     }
@@ -139,7 +162,10 @@ impl Rays {
             let last = (first + (i32x8::splat(1) << by)).min(size);
             if !field.is_clamped {
                 let offset = cell[axis] - PixelLanes::from_i32x8(at);
-                return [PixelLanes::from_i32x8(first) + offset, PixelLanes::from_i32x8(last) + offset];
+                return [
+                    PixelLanes::from_i32x8(first) + offset,
+                    PixelLanes::from_i32x8(last) + offset,
+                ];
             }
             // Beyond a clamped edge its nodes go on for ever.
             let goes_on_low = first.simd_lt(is_cell.select(i32x8::splat(0), i32x8::splat(1)));
@@ -155,8 +181,13 @@ impl Rays {
     /// The greatest height in each ray's node, 0 to 1; 1 for a cell.
     fn node_heights(&self, field: &HeightField, folded: &[i32x8; 2]) -> PixelLanes {
         let (levels, x, y) = (self.level.to_array(), folded[0].to_array(), folded[1].to_array());
-        let height =
-            |lane: usize| if levels[lane] == 0 { FULL_F32 } else { field.node_max(levels[lane], x[lane], y[lane]) };
+        let height = |lane: usize| {
+            if levels[lane] == 0 {
+                FULL_F32
+            } else {
+                field.node_max(levels[lane], x[lane], y[lane])
+            }
+        };
         PixelLanes::new(std::array::from_fn(height)) * (1.0 / FULL_F32)
     }
 
@@ -170,11 +201,20 @@ impl Rays {
         (self.depth + way(0).fast_min(way(1))).fast_min(PixelLanes::ONE)
     }
 
-    /// Depth of the first crossing with the patch of each ray's cell; more than 1 where there is none.
+    /// Depth of the first crossing with the patch of each ray's cell; more than 1 where there is
+    /// none.
     ///
-    /// Along the ray `f(tau) = depth + tau - 1 + h = a tau^2 + b tau + c`; the hit is the first `tau >= 0` with `f >= 0`.
-    fn cell_hit(&self, field: &HeightField, place: &[PixelLanes; 2], nodes: &Nodes, is_open: i32x8) -> PixelLanes {
-        let (xs, ys, is_open) = (nodes.folded[0].to_array(), nodes.folded[1].to_array(), is_open.to_array());
+    /// Along the ray `f(tau) = depth + tau - 1 + h = a tau^2 + b tau + c`; the hit is the first
+    /// `tau >= 0` with `f >= 0`.
+    fn cell_hit(
+        &self,
+        field: &HeightField,
+        place: &[PixelLanes; 2],
+        nodes: &Nodes,
+        is_open: i32x8,
+    ) -> PixelLanes {
+        let (xs, ys, is_open) =
+            (nodes.folded[0].to_array(), nodes.folded[1].to_array(), is_open.to_array());
         let mut corners = [[0.0_f32; 8]; 4];
         for lane in (0..8).filter(|&lane| is_open[lane] != 0) {
             let heights = field.corners(xs[lane], ys[lane]);
@@ -195,10 +235,14 @@ impl Rays {
 fn fold(field: &HeightField, axis: usize, cell: PixelLanes) -> i32x8 {
     let size = field.size[axis];
     if field.is_clamped {
-        return cell.fast_max(PixelLanes::splat(-1.0)).fast_min(PixelLanes::splat((size - 1) as f32)).fast_trunc_int();
+        return cell
+            .fast_max(PixelLanes::splat(-1.0))
+            .fast_min(PixelLanes::splat((size - 1) as f32))
+            .fast_trunc_int();
     }
     let cell = cell.fast_trunc_int();
-    let patterns = (PixelLanes::from_i32x8(cell) * field.inverse_size[axis]).floor().fast_trunc_int();
+    let patterns =
+        (PixelLanes::from_i32x8(cell) * field.inverse_size[axis]).floor().fast_trunc_int();
     let size = i32x8::splat(size);
     let at = cell - patterns * size;
     // The product may round to the next whole number.

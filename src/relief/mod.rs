@@ -1,10 +1,11 @@
 //! Where the eye meets the relief.
 //!
-//! Input: the view ray of a pixel in the texture frame, `ray = alpha dP/du + beta dP/dv - gamma W N` with
-//! `W = sqrt(|dP/du x dP/dv|)`, the world length of a texture repeat. Output: the *displacement* `D = s S`, how far the
-//! ray moves along the texture, in repeats, between the polygon and the deepest relief, with the view slope
-//! `s = (alpha, beta) / gamma` and the relief depth `S`; and the *hit* `q = b + t D` with the depth `t`, 0 to 1, at which
-//! the ray from the base coordinate `b` first meets the relief. Lanes are pixels.
+//! Input: the view ray of a pixel in the texture frame, `ray = alpha dP/du + beta dP/dv - gamma W
+//! N` with `W = sqrt(|dP/du x dP/dv|)`, the world length of a texture repeat. Output: the
+//! *displacement* `D = s S`, how far the ray moves along the texture, in repeats, between the
+//! polygon and the deepest relief, with the view slope `s = (alpha, beta) / gamma` and the relief
+//! depth `S`; and the *hit* `q = b + t D` with the depth `t`, 0 to 1, at which the ray from the
+//! base coordinate `b` first meets the relief. Lanes are pixels.
 
 pub mod directions;
 mod displacement;

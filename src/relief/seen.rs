@@ -1,9 +1,9 @@
 //! The image of a relief seen along one displacement, over a whole repeat of the pattern.
 //!
-//! A floating-horizon sweep over a whole level: lines run in the direction of the displacement, a texel apart, and are walked
-//! row by row along its longer axis (see `filter::horizon`). The visible part of each segment, moved onto the mean depth
-//! plane, is cut at the image's rows and added to the image's texel that it falls into; a texel is the mean of what falls
-//! into it.
+//! A floating-horizon sweep over a whole level: lines run in the direction of the displacement, a
+//! texel apart, and are walked row by row along its longer axis (see `filter::horizon`). The
+//! visible part of each segment, moved onto the mean depth plane, is cut at the image's rows and
+//! added to the image's texel that it falls into; a texel is the mean of what falls into it.
 //!
 //! ```text
 //!  row i-1          row i           record M so far: what lies before it is hidden
@@ -30,9 +30,16 @@ pub enum Seen {
     Heights,
 }
 
-/// The image of `surface` seen along `displacement` (base texels down to the deepest relief), swept on a mip level, in an
-/// image of `size`, which is at most the level's, addressed by the place on the mean depth plane.
-pub fn seen_image(surface: &Surface, seen: Seen, level: usize, size: [usize; 2], [du, dv]: [f32; 2]) -> SeenImage {
+/// The image of `surface` seen along `displacement` (base texels down to the deepest relief), swept
+/// on a mip level, in an image of `size`, which is at most the level's, addressed by the place on
+/// the mean depth plane.
+pub fn seen_image(
+    surface: &Surface,
+    seen: Seen,
+    level: usize,
+    size: [usize; 2],
+    [du, dv]: [f32; 2],
+) -> SeenImage {
     let source = &surface.levels()[level];
     let [to, from] = [source, surface.base()].map(|level| level.size().map(|n| n as f32));
     let (du, dv) = (du * (to[0] / from[0]), dv * (to[1] / from[1]));
@@ -46,7 +53,8 @@ pub fn seen_image(surface: &Surface, seen: Seen, level: usize, size: [usize; 2],
     for first in (0..sweep.rows.width()).step_by(8) {
         sweep.lines(first);
     }
-    let mean = |sum: &[f32; 4]| [0, 1, 2].map(|i| sum[i] / (sum[3].max(f32::MIN_POSITIVE) * FULL_F32));
+    let mean =
+        |sum: &[f32; 4]| [0, 1, 2].map(|i| sum[i] / (sum[3].max(f32::MIN_POSITIVE) * FULL_F32));
     if !is_turned {
         return sweep.sums.iter().map(mean).collect();
     }
@@ -55,7 +63,8 @@ pub fn seen_image(surface: &Surface, seen: Seen, level: usize, size: [usize; 2],
 
 /// The mean square of the differences of two images.
 pub fn square_difference(a: &[[f32; 3]], b: &[[f32; 3]]) -> f32 {
-    let square = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| (a[c] - b[c]) * (a[c] - b[c])).sum::<f32>();
+    let square =
+        |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| (a[c] - b[c]) * (a[c] - b[c])).sum::<f32>();
     a.iter().zip(b).map(square).sum::<f32>() / (3 * a.len()) as f32
 }
 
@@ -82,7 +91,12 @@ struct Row {
 }
 
 impl<'a> Sweep<'a> {
-    fn new((rows, seen): (&'a Rows, Seen), [dx, dy]: [f32; 2], mean_depth: f32, size: [usize; 2]) -> Self {
+    fn new(
+        (rows, seen): (&'a Rows, Seen),
+        [dx, dy]: [f32; 2],
+        mean_depth: f32,
+        size: [usize; 2],
+    ) -> Self {
         let shear = if dy == 0.0 { 0.0 } else { dx / dy };
         let scale = [size[0] as f32 / rows.width() as f32, size[1] as f32 / rows.height() as f32];
         let toward = if dy < 0.0 { -1.0 } else { 1.0 };
@@ -90,7 +104,8 @@ impl<'a> Sweep<'a> {
         Self { rows, seen, toward, depth: dy.abs(), shear, mean_depth, size, scale, sums }
     }
 
-    /// Walks eight lines over one period of the pattern, after a walk that finds what hides its beginning.
+    /// Walks eight lines over one period of the pattern, after a walk that finds what hides its
+    /// beginning.
     fn lines(&mut self, first: usize) {
         let num_rows = self.rows.height() as i32;
         let lead = (self.depth.ceil() as i32 + 1).min(num_rows);
@@ -98,7 +113,8 @@ impl<'a> Sweep<'a> {
         let mut previous = self.row(first, -lead);
         let mut horizon = previous.place;
         // What is seen of one period: between the record at its beginning and the same a period on.
-        let (begin, end) = (-self.depth * self.mean_depth, num_rows as f32 - self.depth * self.mean_depth);
+        let (begin, end) =
+            (-self.depth * self.mean_depth, num_rows as f32 - self.depth * self.mean_depth);
         let last = num_rows + self.depth as i32 + 1;
         for i in 1 - lead..=last {
             let row = self.row(first, i);
@@ -138,22 +154,40 @@ impl<'a> Sweep<'a> {
         Row { place: TexelLanes::splat(i as f32) - depth * self.depth, values }
     }
 
-    /// Adds the parts from `from` to `to` of the segments between two rows, where there is a record.
-    fn add(&mut self, first: usize, [from, to]: [TexelLanes; 2], [near, far]: [&Row; 2], records: u32) {
-        let inverse = TexelLanes::ONE / (far.place - near.place).fast_max(TexelLanes::splat(LEAST_SEGMENT));
+    /// Adds the parts from `from` to `to` of the segments between two rows, where there is a
+    /// record.
+    fn add(
+        &mut self,
+        first: usize,
+        [from, to]: [TexelLanes; 2],
+        [near, far]: [&Row; 2],
+        records: u32,
+    ) {
+        let inverse =
+            TexelLanes::ONE / (far.place - near.place).fast_max(TexelLanes::splat(LEAST_SEGMENT));
         let line = lane_columns(first as i32);
-        // Most parts are short and fall into one texel; a long one is cut into parts shorter than a texel.
+        // Most parts are short and fall into one texel; a long one is cut into parts shorter than a
+        // texel.
         let longest = ((to - from) * self.scale[1]).to_array();
-        let longest = (0..8).filter(|lane| records >> lane & 1 == 1).map(|lane| longest[lane]).fold(0.0, f32::max);
+        let longest = (0..8)
+            .filter(|lane| records >> lane & 1 == 1)
+            .map(|lane| longest[lane])
+            .fold(0.0, f32::max);
         let num_parts = (longest * 2.0) as i32 + 1;
         let length = (to - from) * (1.0 / num_parts as f32);
         for part in 0..num_parts {
             let middle = from + length * (part as f32 + 0.5);
-            let at = ((middle - near.place) * inverse).fast_max(TexelLanes::ZERO).fast_min(TexelLanes::ONE);
-            let value = |i: usize| (near.values[i] + (far.values[i] - near.values[i]) * at) * length;
+            let at = ((middle - near.place) * inverse)
+                .fast_max(TexelLanes::ZERO)
+                .fast_min(TexelLanes::ONE);
+            let value =
+                |i: usize| (near.values[i] + (far.values[i] - near.values[i]) * at) * length;
             let eta = (middle + self.depth * self.mean_depth) * self.toward;
             // Texel centres lie at whole numbers.
-            let x = ((line + eta * self.shear + 0.5) * self.scale[0]).floor().fast_trunc_int().to_array();
+            let x = ((line + eta * self.shear + 0.5) * self.scale[0])
+                .floor()
+                .fast_trunc_int()
+                .to_array();
             let y = ((eta + 0.5) * self.scale[1]).floor().fast_trunc_int().to_array();
             let sums = [value(0), value(1), value(2), length].map(TexelLanes::to_array);
             let mut left = records;
@@ -163,7 +197,10 @@ impl<'a> Sweep<'a> {
                 if sums[3][lane] > 0.0 {
                     let place = wrap_index(Wrap::Repeat, y[lane], self.size[1]) * self.size[0]
                         + wrap_index(Wrap::Repeat, x[lane], self.size[0]);
-                    self.sums[place].iter_mut().zip(&sums).for_each(|(sum, lanes)| *sum += lanes[lane]);
+                    self.sums[place]
+                        .iter_mut()
+                        .zip(&sums)
+                        .for_each(|(sum, lanes)| *sum += lanes[lane]);
                 }
             }
         }

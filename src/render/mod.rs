@@ -1,9 +1,10 @@
 //! A whole frame: geometry, tiles, relief, filter, shade.
 //!
 //! 1. `geometry` projects, clips and snaps the triangles.
-//! 2. `raster` finds the visible triangle of every sample, tile by tile, and gathers the quads that each covers.
-//! 3. For each block of quads (`shade`): `relief` finds the hits, `footprint` says where the pixels lie in the texture,
-//!    `filter` finds their texels, `light` shades them.
+//! 2. `raster` finds the visible triangle of every sample, tile by tile, and gathers the quads that
+//!    each covers.
+//! 3. For each block of quads (`shade`): `relief` finds the hits, `footprint` says where the pixels
+//!    lie in the texture, `filter` finds their texels, `light` shades them.
 //! 4. `raster` adds the colours up to pixels.
 
 mod prepared;
@@ -19,8 +20,8 @@ use crate::raster::{Pool, QuadBlock, Rasterizer, TileGrid};
 use crate::scene::{Camera, Scene};
 use crate::settings::{Region, Settings};
 
-/// What drawing a frame took, in milliseconds: of the whole frame for `geometry_ms`, `raster_ms` and `binning_ms`, of all
-/// threads together for the others.
+/// What drawing a frame took, in milliseconds: of the whole frame for `geometry_ms`, `raster_ms`
+/// and `binning_ms`, of all threads together for the others.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stats {
     /// Projecting, clipping and snapping.
@@ -100,7 +101,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws the next frames' part `region`, or the whole frames, and leaves the other settings as they are.
+    /// Draws the next frames' part `region`, or the whole frames, and leaves the other settings as
+    /// they are.
     ///
     /// # Errors
     /// Says so when the region does not lie within the frame.
@@ -131,8 +133,13 @@ impl Renderer {
         self.render_timed(frame, &|| 0.0);
     }
 
-    /// [`Self::render_into`], and what it took; `clock` gives milliseconds, since the library reads no clock of its own.
-    pub fn render_timed<P: DrawnPixel>(&mut self, frame: &mut Frame<P>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
+    /// [`Self::render_into`], and what it took; `clock` gives milliseconds, since the library reads
+    /// no clock of its own.
+    pub fn render_timed<P: DrawnPixel>(
+        &mut self,
+        frame: &mut Frame<P>,
+        clock: &(dyn Fn() -> f64 + Sync),
+    ) -> Stats {
         P::draw(self, frame, clock)
     }
 
@@ -152,7 +159,10 @@ impl Renderer {
         let work = shader.work();
         Stats {
             geometry_ms: projected - start,
-            raster_ms: (clock() - projected - counts.shade_ms / rayon::current_num_threads() as f64).max(0.0),
+            raster_ms: (clock()
+                - projected
+                - counts.shade_ms / rayon::current_num_threads() as f64)
+                .max(0.0),
             binning_ms: counts.binning_ms,
             coverage_ms: counts.coverage_ms,
             attributes_ms: counts.attributes_ms,
@@ -167,21 +177,33 @@ impl Renderer {
     }
 }
 
-/// A [`Pixel`] that frames are drawn in. Each kind of pixel has its drawing compiled once, here, and not in every crate that
-/// draws.
+/// A [`Pixel`] that frames are drawn in. Each kind of pixel has its drawing compiled once, here,
+/// and not in every crate that draws.
 pub trait DrawnPixel: Pixel {
     #[doc(hidden)]
-    fn draw(renderer: &mut Renderer, frame: &mut Frame<Self>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats;
+    fn draw(
+        renderer: &mut Renderer,
+        frame: &mut Frame<Self>,
+        clock: &(dyn Fn() -> f64 + Sync),
+    ) -> Stats;
 }
 
 impl DrawnPixel for [f32; 4] {
-    fn draw(renderer: &mut Renderer, frame: &mut Frame<Self>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
+    fn draw(
+        renderer: &mut Renderer,
+        frame: &mut Frame<Self>,
+        clock: &(dyn Fn() -> f64 + Sync),
+    ) -> Stats {
         renderer.draw(frame, clock)
     }
 }
 
 impl DrawnPixel for [u8; 4] {
-    fn draw(renderer: &mut Renderer, frame: &mut Frame<Self>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
+    fn draw(
+        renderer: &mut Renderer,
+        frame: &mut Frame<Self>,
+        clock: &(dyn Fn() -> f64 + Sync),
+    ) -> Stats {
         renderer.draw(frame, clock)
     }
 }

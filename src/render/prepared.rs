@@ -7,11 +7,12 @@ use crate::texture::Surface;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Most texels of all surfaces together that far-field tables are built for: some seconds of work. Surfaces beyond, in the
-/// order of the materials, are drawn without.
+/// Most texels of all surfaces together that far-field tables are built for: some seconds of work.
+/// Surfaces beyond, in the order of the materials, are drawn without.
 const MOST_FAR_TEXELS: usize = 1 << 22;
 
-/// The surfaces of a scene, ready for its settings. Materials that share a surface share what is made of it.
+/// The surfaces of a scene, ready for its settings. Materials that share a surface share what is
+/// made of it.
 #[derive(Debug)]
 pub(crate) struct PreparedScene {
     surfaces: Vec<Prepared>,
@@ -31,7 +32,11 @@ impl PreparedScene {
                 surfaces.len() - 1
             })
         };
-        let of_material = scene.materials.iter().map(|material| material.surface.as_ref().map(&mut index_of)).collect();
+        let of_material = scene
+            .materials
+            .iter()
+            .map(|material| material.surface.as_ref().map(&mut index_of))
+            .collect();
         let mut left = MOST_FAR_TEXELS;
         let has_far_field = surfaces.iter().map(|surface| {
             let num_texels = surface.base().size().iter().product();
@@ -56,7 +61,9 @@ impl PreparedScene {
     pub(crate) fn make_ready(&self, settings: &Settings) {
         if settings.parallax {
             let is_lit = settings.lighting == Lighting::Lit;
-            self.surfaces.par_iter().for_each(|prepared| prepared.make_ready(&settings.filter, is_lit));
+            self.surfaces
+                .par_iter()
+                .for_each(|prepared| prepared.make_ready(&settings.filter, is_lit));
         }
     }
 

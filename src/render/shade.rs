@@ -13,8 +13,8 @@ use glam::Vec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Most pairs of quads whose footprints are made at once: they stay in the first cache, and are a whole number of the
-/// horizon's patches.
+/// Most pairs of quads whose footprints are made at once: they stay in the first cache, and are a
+/// whole number of the horizon's patches.
 const PAIRS_AT_ONCE: usize = 64;
 
 type Colors = Vec<[PixelLanes; 3]>;
@@ -59,20 +59,24 @@ impl<'a> Shader<'a> {
 
     /// What filtering took so far.
     pub(super) fn work(&self) -> Work {
-        let [num_tested, num_averaged] = self.num_texels.each_ref().map(|num| num.load(Ordering::Relaxed));
+        let [num_tested, num_averaged] =
+            self.num_texels.each_ref().map(|num| num.load(Ordering::Relaxed));
         Work { num_tested, num_averaged }
     }
 
     /// Appends the linear colours of a block's pairs; those of helper lanes are anything.
     pub(super) fn shade(&self, block: &QuadBlock, colors: &mut Colors) {
         let material = &self.scene.materials[block.material];
-        let Some(prepared) = self.prepared.of_material(block.material, self.settings.parallax) else {
+        let Some(prepared) = self.prepared.of_material(block.material, self.settings.parallax)
+        else {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
         let ground = Ground { material, prepared };
         let mut scratch = self.pool.take();
         if let Some(samples) = &self.samples {
-            return colors.extend(block.pairs().map(|pair| self.sampled(&ground, &pair, samples, &mut scratch)));
+            return colors.extend(
+                block.pairs().map(|pair| self.sampled(&ground, &pair, samples, &mut scratch)),
+            );
         }
         for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
             let end = block.num_pairs().min(first + PAIRS_AT_ONCE);
@@ -85,7 +89,9 @@ impl<'a> Shader<'a> {
         let mut colors = [Vec3::ZERO; 8];
         for lane in pair.covered() {
             colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
-                Some(lights) => material.diffuse * lights.diffuse(Vec3::Z) + lights.specular(Vec3::Z, material),
+                Some(lights) => {
+                    material.diffuse * lights.diffuse(Vec3::Z) + lights.specular(Vec3::Z, material)
+                }
                 None => material.diffuse,
             };
         }
@@ -106,7 +112,8 @@ impl<'a> Shader<'a> {
         if self.is_lit() {
             let pairs = pairs.clone().map(|index| block.pair(index));
             lights.extend(pairs.flat_map(|pair| {
-                pair.covered().filter_map(move |lane| self.lights_at(&pair, lane, pixel_center(&pair, lane)))
+                pair.covered()
+                    .filter_map(move |lane| self.lights_at(&pair, lane, pixel_center(&pair, lane)))
             }));
         }
         filtered.clear();
@@ -143,7 +150,8 @@ impl<'a> Shader<'a> {
         }));
     }
 
-    /// Pixels that are means over samples of the screen, each with a ray of its own and shaded on its own.
+    /// Pixels that are means over samples of the screen, each with a ray of its own and shaded on
+    /// its own.
     fn sampled(
         &self,
         ground: &Ground,
@@ -153,7 +161,8 @@ impl<'a> Shader<'a> {
     ) -> [PixelLanes; 3] {
         let field = ground.prepared.field();
         let none = [PixelLanes::ZERO; 3];
-        let pixels = Footprints::of_quads(&pair.uv, &none, None, &FootprintRule::FLAT, pair.covered_bits());
+        let pixels =
+            Footprints::of_quads(&pair.uv, &none, None, &FootprintRule::FLAT, pair.covered_bits());
         let mut colors = [Vec3::ZERO; 8];
         for lane in pair.covered() {
             let planes = pair.planes[lane / 4];
@@ -162,14 +171,25 @@ impl<'a> Shader<'a> {
             for &([dx, dy], num_samples) in &samples.groups {
                 let (x, y) = (dx + center_x, dy + center_y);
                 // Beyond the horizon there is no surface to sample.
-                let is_before = eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
+                let is_before =
+                    eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
                 let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
                 let (uv, view) = planes.at(x, y);
-                let rays =
-                    Footprints::of_samples((&uv, &view), field, self.rule.is_traced, &pixels.lane(lane), covered);
+                let rays = Footprints::of_samples(
+                    (&uv, &view),
+                    field,
+                    self.rule.is_traced,
+                    &pixels.lane(lane),
+                    covered,
+                );
                 let mut filtered = [Filtered::default()];
                 let batch = Batch { pixels: &[rays], lights: &[], is_fine: false };
-                self.count(self.settings.filter.colors(ground.prepared, &batch, &mut scratch.filter, &mut filtered));
+                self.count(self.settings.filter.colors(
+                    ground.prepared,
+                    &batch,
+                    &mut scratch.filter,
+                    &mut filtered,
+                ));
                 for i in rays.covered() {
                     let own = [x.as_array()[i], y.as_array()[i]];
                     let place = if samples.is_lit_apart { own } else { [center_x, center_y] };
@@ -213,8 +233,11 @@ impl<'a> Shader<'a> {
         let w = 1.0 / (a * x + b * y + c);
         let at = |planes: &[Plane; 3]| Vec3::from(planes.map(|[a, b, c]| (a * x + b * y + c) * w));
         let LitPlanes { position, normal, tangent_u, tangent_v } = lit;
-        let point =
-            SurfacePoint { position: at(position), normal: at(normal), tangents: [at(tangent_u), at(tangent_v)] };
+        let point = SurfacePoint {
+            position: at(position),
+            normal: at(normal),
+            tangents: [at(tangent_u), at(tangent_v)],
+        };
         Some(LocalLights::at(&point, self.scene.camera.eye, &self.scene.lights, self.scene.ambient))
     }
 }

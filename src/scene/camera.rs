@@ -3,7 +3,8 @@
 use crate::error::{Error, Result};
 use glam::Vec3;
 
-/// Sine and cosine of the 15 degrees from which [`Camera::framing`] looks down: enough to see the top of things.
+/// Sine and cosine of the 15 degrees from which [`Camera::framing`] looks down: enough to see the
+/// top of things.
 const ELEVATION: [f32; 2] = [0.258_819_04, 0.965_925_8];
 /// How much of a picture [`Camera::framing`] fills at most, each way.
 const FILLED: f32 = 0.92;
@@ -25,14 +26,20 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { eye: Vec3::new(0.0, 0.0, 3.0), target: Vec3::ZERO, up: Vec3::Y, fov_degrees: 60.0, near: 0.01 }
+        Self {
+            eye: Vec3::new(0.0, 0.0, 3.0),
+            target: Vec3::ZERO,
+            up: Vec3::Y,
+            fov_degrees: 60.0,
+            near: 0.01,
+        }
     }
 }
 
 impl Camera {
-    /// Frames the box from `min` to `max` (world units) from its front, which is the side of +Z, and a little from above, at
-    /// the default field of view. A picture that is `aspect` times as wide as high, or wider, shows all of it with a small
-    /// margin.
+    /// Frames the box from `min` to `max` (world units) from its front, which is the side of +Z,
+    /// and a little from above, at the default field of view. A picture that is `aspect` times as
+    /// wide as high, or wider, shows all of it with a small margin.
     pub fn framing(min: Vec3, max: Vec3, aspect: f32) -> Self {
         let center = (min + max) * 0.5;
         // Far from the origin f32 cannot tell an eye nearer than this from its target.
@@ -40,7 +47,8 @@ impl Camera {
         let half = ((max - min) * 0.5).max(Vec3::splat(least));
         let to_eye = Vec3::new(0.0, ELEVATION[0], ELEVATION[1]);
         let up = Vec3::new(0.0, ELEVATION[1], -ELEVATION[0]);
-        // A corner is in view at the distance `toward + |across| / slope` and beyond; left and right are alike.
+        // A corner is in view at the distance `toward + |across| / slope` and beyond; left and
+        // right are alike.
         let slope = Self::default().tan_half_fov() as f32 * FILLED;
         let distance = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[y, z]| {
             let corner = half * Vec3::new(1.0, y, z);
@@ -57,7 +65,8 @@ impl Camera {
         [right, right.cross(forward), forward]
     }
 
-    /// Pixels per unit of `x / w` and `y / w`, where `w` is the distance along the view, for a frame `height` pixels high (pixels are square).
+    /// Pixels per unit of `x / w` and `y / w`, where `w` is the distance along the view, for a
+    /// frame `height` pixels high (pixels are square).
     pub fn focal_pixels(&self, height: u32) -> f32 {
         (f64::from(height) * 0.5 / self.tan_half_fov()) as f32
     }
@@ -92,30 +101,45 @@ impl Camera {
 mod tests {
     use super::*;
 
-    /// Where the corners of a box are seen, -1 to 1 from the left and lower edge of the picture to the others.
+    /// Where the corners of a box are seen, -1 to 1 from the left and lower edge of the picture to
+    /// the others.
     fn corners_seen(camera: &Camera, min: Vec3, max: Vec3, aspect: f32) -> Vec<[f32; 2]> {
         let [right, up, forward] = camera.axes();
         let tan = (camera.fov_degrees.to_radians() * 0.5).tan();
-        let corner = |i: u32| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { min[axis] } else { max[axis] });
+        let corner =
+            |i: u32| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { min[axis] } else { max[axis] });
         (0..8)
             .map(|i| Vec3::from_array(corner(i)) - camera.eye)
-            .map(|ray| [ray.dot(right) / aspect, ray.dot(up)].map(|across| across / (ray.dot(forward) * tan)))
+            .map(|ray| {
+                [ray.dot(right) / aspect, ray.dot(up)]
+                    .map(|across| across / (ray.dot(forward) * tan))
+            })
             .collect()
     }
 
     #[test]
     fn framing_fills_the_picture_and_keeps_a_margin() {
-        let boxes =
-            [[1.0, 1.0, 1.0], [10.0, 1.0, 1.0], [1.0, 10.0, 1.0], [1.0, 1.0, 10.0], [5.0, 0.0, 5.0], [2.0, 3.0, 0.0]];
+        let boxes = [
+            [1.0, 1.0, 1.0],
+            [10.0, 1.0, 1.0],
+            [1.0, 10.0, 1.0],
+            [1.0, 1.0, 10.0],
+            [5.0, 0.0, 5.0],
+            [2.0, 3.0, 0.0],
+        ];
         for half in boxes.map(Vec3::from_array) {
             for aspect in [0.4, 1.0, 16.0 / 9.0] {
                 let (min, max) = (Vec3::splat(7.0) - half, Vec3::splat(7.0) + half);
                 let camera = Camera::framing(min, max, aspect);
                 let seen = corners_seen(&camera, min, max, aspect);
-                let farthest = seen.as_flattened().iter().fold(0.0_f32, |most, at| most.max(at.abs()));
+                let farthest =
+                    seen.as_flattened().iter().fold(0.0_f32, |most, at| most.max(at.abs()));
                 assert!((0.9..0.93).contains(&farthest), "{half} at {aspect}: {seen:?}");
                 let wider = corners_seen(&camera, min, max, aspect * 2.0);
-                assert!(wider.as_flattened().iter().all(|at| at.abs() < 0.93), "{half} at {aspect}: {wider:?}");
+                assert!(
+                    wider.as_flattened().iter().all(|at| at.abs() < 0.93),
+                    "{half} at {aspect}: {wider:?}"
+                );
             }
         }
     }
@@ -136,8 +160,13 @@ mod tests {
                 let camera = Camera::framing(min, max, 1.0);
                 camera.validate().unwrap_or_else(|error| panic!("{scale} at {place}: {error}"));
                 let forward = camera.axes()[2];
-                let nearest = (camera.target - camera.eye).dot(forward) - (max - min).length() * 0.5;
-                assert!(camera.near <= nearest, "{scale} at {place}: near {} beyond {nearest}", camera.near);
+                let nearest =
+                    (camera.target - camera.eye).dot(forward) - (max - min).length() * 0.5;
+                assert!(
+                    camera.near <= nearest,
+                    "{scale} at {place}: near {} beyond {nearest}",
+                    camera.near
+                );
             }
         }
     }

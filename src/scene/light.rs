@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-/// A light. Intensities are linear RGB, 0 to 1e6; a white surface that faces an intensity of 1 is drawn white.
+/// A light. Intensities are linear RGB, 0 to 1e6; a white surface that faces an intensity of 1 is
+/// drawn white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
     /// Light from infinitely far away.

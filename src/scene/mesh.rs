@@ -1,8 +1,9 @@
 //! Triangles with positions, texture coordinates, normals and tangent frames.
 //!
-//! The frame of a vertex is unnormalised: `dP/du`, `dP/dv` in world units per texture repeat, averaged over the
-//! triangles around it by area, and the unit normal. Mirrored texture coordinates keep their own handedness; a
-//! triangle without area, in space or in the texture, adds nothing to the average.
+//! The frame of a vertex is unnormalised: `dP/du`, `dP/dv` in world units per texture repeat,
+//! averaged over the triangles around it by area, and the unit normal. Mirrored texture coordinates
+//! keep their own handedness; a triangle without area, in space or in the texture, adds nothing to
+//! the average.
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -31,9 +32,15 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// A mesh from its triangles; makes normals (area-weighted) where `normals` is empty, and tangents always. Triangles that
-    /// name vertices that do not exist add nothing to either; the renderer refuses them.
-    pub fn new(positions: Vec<Vec3>, tex_coords: Vec<Vec2>, normals: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
+    /// A mesh from its triangles; makes normals (area-weighted) where `normals` is empty, and
+    /// tangents always. Triangles that name vertices that do not exist add nothing to either; the
+    /// renderer refuses them.
+    pub fn new(
+        positions: Vec<Vec3>,
+        tex_coords: Vec<Vec2>,
+        normals: Vec<Vec3>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Self {
         let mut mesh = Self { positions, tex_coords, normals, triangles, ..Self::default() };
         if mesh.normals.is_empty() {
             mesh.normals = mesh.area_weighted_normals();
@@ -42,14 +49,18 @@ impl Mesh {
         mesh
     }
 
-    /// Corners in f64: products of the largest and smallest positions allowed leave the range of f32.
+    /// Corners in f64: products of the largest and smallest positions allowed leave the range of
+    /// f32.
     fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
         triangle.map(|i| self.positions[i as usize].as_dvec3())
     }
 
     /// The triangles whose corners all have an index below `num`.
     fn triangles_within(&self, num: usize) -> impl Iterator<Item = [u32; 3]> {
-        self.triangles.iter().copied().filter(move |triangle| triangle.iter().all(|&i| (i as usize) < num))
+        self.triangles
+            .iter()
+            .copied()
+            .filter(move |triangle| triangle.iter().all(|&i| (i as usize) < num))
     }
 
     fn area_weighted_normals(&self) -> Vec<Vec3> {
@@ -88,13 +99,18 @@ impl Mesh {
             return Err(format!("material {} of {num_materials} does not exist", self.material));
         }
         if self.normals.len() != num || ![0, num].contains(&self.tex_coords.len()) {
-            return Err(format!("{num} positions need as many normals, and as many texture coordinates or none"));
+            return Err(format!(
+                "{num} positions need as many normals, and as many texture coordinates or none"
+            ));
         }
         if self.tangents.len() != self.tex_coords.len() {
             return Err("tangents are missing; Mesh::new makes them".into());
         }
-        if let Some(triangle) = self.triangles.iter().find(|t| t.iter().any(|&i| i as usize >= num)) {
-            return Err(format!("triangle {triangle:?} names a vertex of {num} that does not exist"));
+        if let Some(triangle) = self.triangles.iter().find(|t| t.iter().any(|&i| i as usize >= num))
+        {
+            return Err(format!(
+                "triangle {triangle:?} names a vertex of {num} that does not exist"
+            ));
         }
         // Compared by component: the largest component of a vector with NaN need not be NaN.
         let is_bounded = |v: &Vec3| v.abs().cmple(Vec3::splat(MAX_POSITION)).all();
@@ -117,7 +133,9 @@ fn average_frame([u, v]: [DVec3; 2], weight: f64, normal: Vec3) -> [Vec3; 2] {
     let area = u.cross(v).length();
     let axes = [u.as_vec3(), v.as_vec3()];
     // Axes this close to parallel come from rounding, not from the mesh.
-    if area > 1e-6 * u.length() * v.length() && axes.iter().all(|axis| axis.is_finite() && *axis != Vec3::ZERO) {
+    if area > 1e-6 * u.length() * v.length()
+        && axes.iter().all(|axis| axis.is_finite() && *axis != Vec3::ZERO)
+    {
         axes
     } else {
         let (u, v) = normal.normalize_or(Vec3::Y).any_orthonormal_pair();
@@ -157,17 +175,27 @@ mod tests {
         let mut flat = SQUARE.map(|p| p.truncate());
         flat[3] = Vec2::ZERO;
         let mesh = square(flat, &good);
-        assert_eq!(mesh.tangents[1], [Vec3::X, Vec3::Y], "the second triangle has no area in the texture");
+        assert_eq!(
+            mesh.tangents[1],
+            [Vec3::X, Vec3::Y],
+            "the second triangle has no area in the texture"
+        );
     }
 
     #[test]
     fn where_the_texture_gives_no_frame_any_finite_one_serves() {
-        for (scale, coords) in [(1.0, [Vec2::ZERO; 4]), (0.0, [Vec2::ONE; 4]), (-1.0, [Vec2::ZERO; 4])] {
+        for (scale, coords) in
+            [(1.0, [Vec2::ZERO; 4]), (0.0, [Vec2::ONE; 4]), (-1.0, [Vec2::ZERO; 4])]
+        {
             let positions = SQUARE.map(|p| p * scale).to_vec();
-            let mesh = Mesh::new(positions, coords.to_vec(), Vec::new(), vec![[0, 1, 2], [0, 2, 3]]);
+            let mesh =
+                Mesh::new(positions, coords.to_vec(), Vec::new(), vec![[0, 1, 2], [0, 2, 3]]);
             for ([u, v], n) in mesh.tangents.iter().zip(&mesh.normals) {
                 assert!(u.is_finite() && v.is_finite() && n.is_normalized(), "scale {scale}");
-                assert!(u.normalize().cross(v.normalize()).dot(*n) > 0.9, "scale {scale}: {u} {v} {n}");
+                assert!(
+                    u.normalize().cross(v.normalize()).dot(*n) > 0.9,
+                    "scale {scale}: {u} {v} {n}"
+                );
             }
         }
     }
@@ -175,17 +203,25 @@ mod tests {
     #[test]
     fn frames_of_huge_and_tiny_meshes_are_exact() {
         for scale in [1e18, 1e-18] {
-            let (positions, coords) = (SQUARE.map(|p| p * scale).to_vec(), SQUARE.map(|p| p.truncate()).to_vec());
+            let (positions, coords) =
+                (SQUARE.map(|p| p * scale).to_vec(), SQUARE.map(|p| p.truncate()).to_vec());
             let mesh = Mesh::new(positions, coords, Vec::new(), vec![[0, 1, 2], [0, 2, 3]]);
-            assert!(mesh.tangents.iter().all(|t| *t == [Vec3::X * scale, Vec3::Y * scale]), "scale {scale}");
+            assert!(
+                mesh.tangents.iter().all(|t| *t == [Vec3::X * scale, Vec3::Y * scale]),
+                "scale {scale}"
+            );
             assert!(mesh.normals.iter().all(|n| *n == Vec3::Z), "scale {scale}");
         }
     }
 
     #[test]
     fn wrong_lengths_and_indices_are_refused() {
-        let short =
-            Mesh::new(SQUARE.to_vec(), vec![Vec2::ZERO; 2], vec![Vec3::Z; 3], vec![[0, 1, 2], [1, 2, u32::MAX]]);
+        let short = Mesh::new(
+            SQUARE.to_vec(),
+            vec![Vec2::ZERO; 2],
+            vec![Vec3::Z; 3],
+            vec![[0, 1, 2], [1, 2, u32::MAX]],
+        );
         assert!(short.validate(1).is_err());
         let valid = square(SQUARE.map(|p| p.truncate()), &[[0, 1, 2]]);
         assert!(valid.validate(1).is_ok());

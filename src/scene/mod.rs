@@ -1,4 +1,5 @@
-//! What is drawn: meshes, materials, a camera and lights. Plain data; the renderer checks it once, at its border.
+//! What is drawn: meshes, materials, a camera and lights. Plain data; the renderer checks it once,
+//! at its border.
 
 mod builtin;
 mod camera;

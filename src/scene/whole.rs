@@ -18,9 +18,11 @@ pub struct Scene {
     pub camera: Camera,
     /// What lights them under [`Lighting::Lit`](crate::Lighting::Lit).
     pub lights: Vec<Light>,
-    /// Light from everywhere, linear RGB, 0 to 1e6, added to the lights under [`Lighting::Lit`](crate::Lighting::Lit).
+    /// Light from everywhere, linear RGB, 0 to 1e6, added to the lights under
+    /// [`Lighting::Lit`](crate::Lighting::Lit).
     pub ambient: Vec3,
-    /// Colour where nothing is hit, linear RGB, 0 to 1e6, and opacity. Default: black and transparent.
+    /// Colour where nothing is hit, linear RGB, 0 to 1e6, and opacity. Default: black and
+    /// transparent.
     pub background: [f32; 4],
 }
 
@@ -32,13 +34,14 @@ impl Scene {
     pub fn validate(&self) -> Result<()> {
         self.camera.validate()?;
         for (i, material) in self.materials.iter().enumerate() {
-            material
-                .validate()
-                .map_err(|reason| Error::scene(format!("material {i} ({})", material.name.escape_debug()), reason))?;
+            material.validate().map_err(|reason| {
+                Error::scene(format!("material {i} ({})", material.name.escape_debug()), reason)
+            })?;
         }
         for (i, mesh) in self.meshes.iter().enumerate() {
-            mesh.validate(self.materials.len())
-                .map_err(|reason| Error::scene(format!("mesh {i} ({})", mesh.name.escape_debug()), reason))?;
+            mesh.validate(self.materials.len()).map_err(|reason| {
+                Error::scene(format!("mesh {i} ({})", mesh.name.escape_debug()), reason)
+            })?;
         }
         for (i, light) in self.lights.iter().enumerate() {
             light.validate().map_err(|reason| Error::scene(format!("light {i}"), reason))?;
@@ -48,7 +51,10 @@ impl Scene {
         }
         let [r, g, b, opacity] = self.background;
         if !light::is_light(Vec3::new(r, g, b)) || !(0.0..=1.0).contains(&opacity) {
-            return Err(Error::scene("scene", "background must be within 0 to 1e6, its opacity within 0 to 1"));
+            return Err(Error::scene(
+                "scene",
+                "background must be within 0 to 1e6, its opacity within 0 to 1",
+            ));
         }
         Ok(())
     }

@@ -24,7 +24,8 @@ pub enum Filter {
     Visible(Visible),
     /// The floating horizon: visible texels by their visible length, in one sweep.
     Horizon(Horizon),
-    /// Common practice, to compare with: 32 linear steps, a secant step, 16x anisotropic mip choice.
+    /// Common practice, to compare with: 32 linear steps, a secant step, 16x anisotropic mip
+    /// choice.
     Parallax(Rays),
     /// Ground truth: rays drawn from the filter kernel, each traced to its exact hit.
     Truth(Rays),
@@ -55,7 +56,8 @@ pub enum Visibility {
     Exact,
     /// Rows from both ends, each until its first hidden texel; what lies between is skipped.
     TwoEnded,
-    /// A ray from every texel; a hidden one leads to the texel that covers it; a buffer keeps each from counting twice.
+    /// A ray from every texel; a hidden one leads to the texel that covers it; a buffer keeps each
+    /// from counting twice.
     Resolved,
 }
 
@@ -73,20 +75,26 @@ pub struct Trilinear {
 pub struct Ewa {
     /// Formula (2) or (3) for the ellipse. Default: [`Derivatives::Relief`].
     pub derivatives: Derivatives,
-    /// The paper's formulas as meant or as printed; as printed takes every texel. Default: [`Formulas::Meant`].
+    /// The paper's formulas as meant or as printed; as printed takes every texel. Default:
+    /// [`Formulas::Meant`].
     pub formulas: Formulas,
-    /// The mip level is chosen so that an ellipse holds at most this many texels, and coarser still where its texels
-    /// sample the Gaussian well; 0: always the base level, as in the paper, and every texel. Default: 256.
+    /// The mip level is chosen so that an ellipse holds at most this many texels, and coarser still
+    /// where its texels sample the Gaussian well; 0: always the base level, as in the paper, and
+    /// every texel. Default: 256.
     pub texel_budget: u32,
-    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
+    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to
+    /// 1e6. Default: 64.
     pub max_anisotropy: f32,
-    /// Whether every texel of the ellipse counts. Else those next to its longer axis do, on a level as coarse as the
-    /// shorter one allows: several times as fast, and `cut` and `texel_kernel` do not count. Default: `false`.
+    /// Whether every texel of the ellipse counts. Else those next to its longer axis do, on a level
+    /// as coarse as the shorter one allows: several times as fast, and `cut` and `texel_kernel` do
+    /// not count. Default: `false`.
     pub every_texel: bool,
-    /// Where the Gaussian `exp(-2 r^2)` is cut, in pixels, 1 to 1.5: 1 is the paper's ellipse. Default: 1.
+    /// Where the Gaussian `exp(-2 r^2)` is cut, in pixels, 1 to 1.5: 1 is the paper's ellipse.
+    /// Default: 1.
     pub cut: f32,
-    /// What is added to A and C of formula (1) for the base level's texels, in square texels, 0.25 to 1: four times the
-    /// variance of what interpolates between them. Default: [`RECONSTRUCTION`]; 1 is Heckbert's.
+    /// What is added to A and C of formula (1) for the base level's texels, in square texels, 0.25
+    /// to 1: four times the variance of what interpolates between them. Default:
+    /// [`RECONSTRUCTION`]; 1 is Heckbert's.
     pub texel_kernel: f32,
 }
 
@@ -99,27 +107,31 @@ pub struct Visible {
     pub derivatives: Derivatives,
     /// The paper's formulas as meant or as printed. Default: [`Formulas::Meant`].
     pub formulas: Formulas,
-    /// The mip level is chosen so that an ellipse holds at most this many texels; 0: always the base level, as in the
-    /// paper. Default: 256.
+    /// The mip level is chosen so that an ellipse holds at most this many texels; 0: always the
+    /// base level, as in the paper. Default: 256.
     pub texel_budget: u32,
-    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
+    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to
+    /// 1e6. Default: 64.
     pub max_anisotropy: f32,
-    /// Longest difference of formula (3) over that of (2) that is taken for a slope of the relief; a longer one is a jump,
-    /// where (2) stands. 1 to 1e6, or 0: never a jump, as in the paper. Default: 4.
+    /// Longest difference of formula (3) over that of (2) that is taken for a slope of the relief;
+    /// a longer one is a jump, where (2) stands. 1 to 1e6, or 0: never a jump, as in the paper.
+    /// Default: 4.
     pub max_stretch: f32,
 }
 
 /// What [`Filter::Horizon`] can be told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon {
-    /// Most texels across a footprint's shorter axis, 2 to 64: picks the mip level, and how finely lines and bins cut the
-    /// footprint (two lines for three texels, five at least). More is finer and slower. Default: 10.
+    /// Most texels across a footprint's shorter axis, 2 to 64: picks the mip level, and how finely
+    /// lines and bins cut the footprint (two lines for three texels, five at least). More is finer
+    /// and slower. Default: 10.
     pub lines: u32,
     /// Whether tables of the seen colour serve distant footprints, unlit. Default: `true`.
     pub far_field: bool,
     /// Most memory of those tables for each material in MiB, 1 to 4096. Default: 32.
     pub far_field_mib: u32,
-    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to 1e6. Default: 64.
+    /// Longest allowed axis of the ellipse over its shortest; a longer ellipse is widened. 1 to
+    /// 1e6. Default: 64.
     pub max_anisotropy: f32,
 }
 
@@ -130,7 +142,8 @@ pub struct Rays {
     pub samples: u32,
 }
 
-/// What `texel_kernel` is by default, in square texels: four times the variance, 1/6, of bilinear interpolation.
+/// What `texel_kernel` is by default, in square texels: four times the variance, 1/6, of bilinear
+/// interpolation.
 pub const RECONSTRUCTION: f32 = 4.0 / 6.0;
 
 /// What `max_anisotropy` is by default.
@@ -155,7 +168,8 @@ const VISIBLE: Visible = Visible {
     max_anisotropy: MAX_ANISOTROPY,
     max_stretch: 4.0,
 };
-const HORIZON: Horizon = Horizon { lines: 10, far_field: true, far_field_mib: 32, max_anisotropy: MAX_ANISOTROPY };
+const HORIZON: Horizon =
+    Horizon { lines: 10, far_field: true, far_field_mib: 32, max_anisotropy: MAX_ANISOTROPY };
 const RAYS: Rays = Rays { samples: 64 };
 
 impl Default for Trilinear {
@@ -209,8 +223,12 @@ pub struct FootprintRule {
 
 impl FootprintRule {
     /// Formula (2) as meant, on the polygon.
-    pub const FLAT: Self =
-        Self { derivatives: Derivatives::Flat, formulas: Formulas::Meant, max_stretch: 0.0, is_traced: false };
+    pub const FLAT: Self = Self {
+        derivatives: Derivatives::Flat,
+        formulas: Formulas::Meant,
+        max_stretch: 0.0,
+        is_traced: false,
+    };
 }
 
 impl Filter {
@@ -228,11 +246,19 @@ impl Filter {
 
     /// How its footprints are made.
     pub fn footprint_rule(&self) -> FootprintRule {
-        let traced =
-            |derivatives, formulas, max_stretch| FootprintRule { derivatives, formulas, max_stretch, is_traced: true };
+        let traced = |derivatives, formulas, max_stretch| FootprintRule {
+            derivatives,
+            formulas,
+            max_stretch,
+            is_traced: true,
+        };
         match *self {
-            Self::Nearest | Self::Bilinear | Self::Truth(_) => FootprintRule { is_traced: true, ..FootprintRule::FLAT },
-            Self::Trilinear(Trilinear { derivatives, formulas }) => traced(derivatives, formulas, 0.0),
+            Self::Nearest | Self::Bilinear | Self::Truth(_) => {
+                FootprintRule { is_traced: true, ..FootprintRule::FLAT }
+            }
+            Self::Trilinear(Trilinear { derivatives, formulas }) => {
+                traced(derivatives, formulas, 0.0)
+            }
             Self::Ewa(Ewa { derivatives, formulas, .. }) => traced(derivatives, formulas, 0.0),
             Self::Visible(Visible { derivatives, formulas, max_stretch, .. }) => {
                 traced(derivatives, formulas, max_stretch)
@@ -242,13 +268,18 @@ impl Filter {
         }
     }
 
-    /// Longest allowed axis of its ellipse over the shortest; without an ellipse of its own, the default.
+    /// Longest allowed axis of its ellipse over the shortest; without an ellipse of its own, the
+    /// default.
     pub fn max_anisotropy(&self) -> f32 {
         match *self {
             Self::Ewa(Ewa { max_anisotropy, .. })
             | Self::Visible(Visible { max_anisotropy, .. })
             | Self::Horizon(Horizon { max_anisotropy, .. }) => max_anisotropy,
-            Self::Nearest | Self::Bilinear | Self::Trilinear(_) | Self::Parallax(_) | Self::Truth(_) => MAX_ANISOTROPY,
+            Self::Nearest
+            | Self::Bilinear
+            | Self::Trilinear(_)
+            | Self::Parallax(_)
+            | Self::Truth(_) => MAX_ANISOTROPY,
         }
     }
 
@@ -267,7 +298,10 @@ impl Filter {
             Self::Visible(Visible { max_anisotropy, max_stretch, .. }) => {
                 within("max_anisotropy", max_anisotropy, 1.0, 1e6)?;
                 if !(max_stretch == 0.0 || (1.0..=1e6).contains(&max_stretch)) {
-                    return Err(Error::setting("max_stretch", format!("{max_stretch} is not 0 or within 1 to 1e6")));
+                    return Err(Error::setting(
+                        "max_stretch",
+                        format!("{max_stretch} is not 0 or within 1 to 1e6"),
+                    ));
                 }
                 Ok(())
             }
@@ -276,7 +310,9 @@ impl Filter {
                 within("far_field_mib", far_field_mib, 1, 4096)?;
                 within("max_anisotropy", max_anisotropy, 1.0, 1e6)
             }
-            Self::Parallax(Rays { samples }) | Self::Truth(Rays { samples }) => within("samples", samples, 1, 65536),
+            Self::Parallax(Rays { samples }) | Self::Truth(Rays { samples }) => {
+                within("samples", samples, 1, 65536)
+            }
         }
     }
 }

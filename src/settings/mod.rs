@@ -1,11 +1,13 @@
-//! How a frame is drawn. Plain data: every field may be set alone, the rest comes from [`Settings::default`].
+//! How a frame is drawn. Plain data: every field may be set alone, the rest comes from
+//! [`Settings::default`].
 
 mod filter;
 
 use crate::error::{Error, Result, within};
 
 pub use filter::{
-    Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, RECONSTRUCTION, Rays, Trilinear, Visibility, Visible,
+    Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, RECONSTRUCTION, Rays, Trilinear,
+    Visibility, Visible,
 };
 
 /// Whether lights are evaluated.
@@ -33,7 +35,9 @@ pub struct Region {
 impl Region {
     /// Whether it lies within a frame of `width` by `height` pixels and holds a pixel.
     pub fn is_within(&self, width: u32, height: u32) -> bool {
-        let fits = |first: u32, num: u32, end: u32| num > 0 && first.checked_add(num).is_some_and(|last| last <= end);
+        let fits = |first: u32, num: u32, end: u32| {
+            num > 0 && first.checked_add(num).is_some_and(|last| last <= end)
+        };
         fits(self.x, self.width, width) && fits(self.y, self.height, height)
     }
 }
@@ -41,25 +45,29 @@ impl Region {
 /// How a frame is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Width of the frame in pixels, 1 to 32768; width times height of what is drawn is at most 2^28. Default: 1280.
+    /// Width of the frame in pixels, 1 to 32768; width times height of what is drawn is at most
+    /// 2^28. Default: 1280.
     pub width: u32,
     /// Height of the frame in pixels, 1 to 32768. Default: 720.
     pub height: u32,
-    /// The part of the frame that is drawn: the picture has its size, and the bytes that this part has in the whole
-    /// frame. Default: `None`, all of it.
+    /// The part of the frame that is drawn: the picture has its size, and the bytes that this part
+    /// has in the whole frame. Default: `None`, all of it.
     pub region: Option<Region>,
-    /// Which texels make up a pixel's colour, with what that filter can be told. Default: [`Filter::Horizon`].
+    /// Which texels make up a pixel's colour, with what that filter can be told. Default:
+    /// [`Filter::Horizon`].
     pub filter: Filter,
-    /// Whether the view ray is traced to the relief; `false` draws the polygon's own texels. Default: `true`.
+    /// Whether the view ray is traced to the relief; `false` draws the polygon's own texels.
+    /// Default: `true`.
     pub parallax: bool,
     /// Whether lights are evaluated. Default: [`Lighting::Unlit`].
     pub lighting: Lighting,
     /// Whether triangles seen from behind (clockwise on the screen) are left out. Default: `false`.
     pub cull_back_faces: bool,
-    /// Coverage and depth samples a pixel: 1, 4 or 8. Shading stays once per pixel and triangle. Default: 4.
+    /// Coverage and depth samples a pixel: 1, 4 or 8. Shading stays once per pixel and triangle.
+    /// Default: 4.
     pub msaa: u32,
-    /// Side of a tile in pixels: 8 (drawn as 16, the side of a block of shading), 16, 32, 64, 128 or 256. The picture does
-    /// not depend on it. Default: 32.
+    /// Side of a tile in pixels: 8 (drawn as 16, the side of a block of shading), 16, 32, 64, 128
+    /// or 256. The picture does not depend on it. Default: 32.
     pub tile_size: u32,
 }
 
@@ -95,20 +103,31 @@ impl Settings {
     pub fn validate(&self) -> Result<()> {
         within("width", self.width, 1, 32768)?;
         within("height", self.height, 1, 32768)?;
-        if let Some(Region { x, y, width, height }) = self.region.filter(|r| !r.is_within(self.width, self.height)) {
-            let reason = format!("{x},{y},{width},{height} is not a part of {}x{} pixels", self.width, self.height);
+        if let Some(Region { x, y, width, height }) =
+            self.region.filter(|r| !r.is_within(self.width, self.height))
+        {
+            let reason = format!(
+                "{x},{y},{width},{height} is not a part of {}x{} pixels",
+                self.width, self.height
+            );
             return Err(Error::setting("region", reason));
         }
         let Region { width, height, .. } = self.drawn();
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
             let name = if self.region.is_some() { "region" } else { "width" };
-            return Err(Error::setting(name, format!("{width} x {height} is more than {MAX_PIXELS} pixels")));
+            return Err(Error::setting(
+                name,
+                format!("{width} x {height} is more than {MAX_PIXELS} pixels"),
+            ));
         }
         if !matches!(self.msaa, 1 | 4 | 8) {
             return Err(Error::setting("msaa", format!("{} is not 1, 4 or 8", self.msaa)));
         }
         if !(self.tile_size.is_power_of_two() && (8..=256).contains(&self.tile_size)) {
-            return Err(Error::setting("tile_size", format!("{} is not 8, 16, 32, 64, 128 or 256", self.tile_size)));
+            return Err(Error::setting(
+                "tile_size",
+                format!("{} is not 8, 16, 32, 64, 128 or 256", self.tile_size),
+            ));
         }
         self.filter.validate()
     }

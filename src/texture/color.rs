@@ -5,8 +5,9 @@
 //! encoded = linear * 12.92                     up to linear 0.0031308,  else 1.055 * linear^(1 / 2.4) - 0.055
 //! ```
 //!
-//! `powf` differs between platforms, so both powers are made of `+ - * /` and `sqrt`, which IEEE 754 rounds exactly:
-//! `x^2.4 = x^2 * fifth_root(x^2)` and `x^(5/12) = cube_root(x * x^(1/4))`, the roots by Halley's iteration.
+//! `powf` differs between platforms, so both powers are made of `+ - * /` and `sqrt`, which IEEE
+//! 754 rounds exactly: `x^2.4 = x^2 * fifth_root(x^2)` and `x^(5/12) = cube_root(x * x^(1/4))`, the
+//! roots by Halley's iteration.
 
 use crate::simd::{HAS_SHUFFLE, LineLanes, from_words, pick, u32x16, words};
 
@@ -16,7 +17,8 @@ pub fn linear_from_srgb(encoded: f32) -> f32 {
     decode(f64::from(clamped(encoded, 0.0))) as f32
 }
 
-/// Linear light, 0 to 1, from an 8-bit sRGB-encoded value: [`linear_from_srgb`] of `encoded / 255`, from a table.
+/// Linear light, 0 to 1, from an 8-bit sRGB-encoded value: [`linear_from_srgb`] of `encoded / 255`,
+/// from a table.
 #[must_use]
 pub fn linear_from_srgb8(encoded: u8) -> f32 {
     const LINEAR: [f32; 256] = {
@@ -39,8 +41,8 @@ pub fn srgb_from_linear(linear: f32) -> f32 {
 
 /// The nearest 8-bit sRGB-encoded value of linear light; clamped, NaN gives 0.
 ///
-/// A byte is the number of thresholds at or below the light. Light is cut into steps so fine that each holds at most
-/// one threshold, and `BELOW` knows how many lie below each step.
+/// A byte is the number of thresholds at or below the light. Light is cut into steps so fine that
+/// each holds at most one threshold, and `BELOW` knows how many lie below each step.
 #[must_use]
 pub fn srgb8_from_linear(linear: f32) -> u8 {
     let linear = clamped(linear, FIRST_STEP);
@@ -51,14 +53,16 @@ pub fn srgb8_from_linear(linear: f32) -> u8 {
 
 /// [`srgb8_from_linear`] of four opaque pixels.
 ///
-/// `255 encoded + 1/2` by a polynomial; where that is so near a whole number that its error may matter, by the thresholds.
+/// `255 encoded + 1/2` by a polynomial; where that is so near a whole number that its error may
+/// matter, by the thresholds.
 #[inline]
 pub(crate) fn srgb8_of_four(linear: &[[f32; 4]; 4]) -> [u8; 16] {
     if !HAS_SHUFFLE {
         return by_thresholds(linear);
     }
     let lanes = LineLanes::new(*linear.as_flattened().first_chunk().expect("sixteen numbers"));
-    let lanes = lanes.simd_gt(LineLanes::ZERO).select(lanes.fast_min(LineLanes::ONE), LineLanes::ZERO);
+    let lanes =
+        lanes.simd_gt(LineLanes::ZERO).select(lanes.fast_min(LineLanes::ONE), LineLanes::ZERO);
     // As 2^-octave times 1 to 2.
     let bits = words(lanes.fast_max(LineLanes::splat(LEAST_POWER)));
     let octave = (bits >> 23_u32) - u32x16::splat(LEAST_POWER.to_bits() >> 23);
@@ -67,7 +71,8 @@ pub(crate) fn srgb8_of_four(linear: &[[f32; 4]; 4]) -> [u8; 16] {
     let [c0, c1, c2, c3, c4, c5, c6] = FIVE_TWELFTHS;
     // In this order few steps wait for each other.
     let power = (x * c1 + c0) + (x * c3 + c2) * x2 + ((x * c5 + c4) + x2 * c6) * (x2 * x2);
-    let power = power * from_words(pick(words(LineLanes::new(POWER_SCALES)), octave)) + (0.5 - 255.0 * 0.055);
+    let power = power * from_words(pick(words(LineLanes::new(POWER_SCALES)), octave))
+        + (0.5 - 255.0 * 0.055);
     let linear_part = lanes * (255.0 * 12.92) + 0.5;
     let rounded = lanes.simd_le(LineLanes::splat(0.003_130_8)).select(linear_part, power);
     let bytes = rounded.fast_trunc_int();
@@ -86,8 +91,15 @@ fn by_thresholds(linear: &[[f32; 4]; 4]) -> [u8; 16] {
 /// Where the polynomial for the power begins: below the end of the linear part.
 const LEAST_POWER: f32 = 1.0 / 512.0;
 /// `x^(5/12)` for x within 1 to 2 by powers of `x - 1.5`: a fit at Chebyshev's nodes, off by 2e-7.
-const FIVE_TWELFTHS: [f32; 7] =
-    [1.184_053_7, 0.328_906_27, -0.063_956_715, 0.022_423_48, -0.009_625_546, 0.005_237_355_4, -0.002_744_525_2];
+const FIVE_TWELFTHS: [f32; 7] = [
+    1.184_053_7,
+    0.328_906_27,
+    -0.063_956_715,
+    0.022_423_48,
+    -0.009_625_546,
+    0.005_237_355_4,
+    -0.002_744_525_2,
+];
 /// `255 * 1.055 * 2^(5/12 (i - 9))`, from [`LEAST_POWER`] on.
 const POWER_SCALES: [f32; 16] = {
     let mut scales = [0.0; 16];
@@ -110,7 +122,8 @@ fn clamped(value: f32, least: f32) -> f32 {
 
 /// A power of two below the least threshold, 0.5 / 255 / 12.92.
 const FIRST_STEP: f32 = 1.0 / 8192.0;
-/// Steps are numbered by the exponent and the first 7 bits of the mantissa: 128 steps from each power of two to the next.
+/// Steps are numbered by the exponent and the first 7 bits of the mantissa: 128 steps from each
+/// power of two to the next.
 const NUM_STEPS: usize = step(1.0) + 1;
 /// The least light of each byte but 0, and an infinity.
 static THRESHOLDS: [f32; 256] = thresholds();
@@ -166,7 +179,8 @@ fn encode(linear: f64) -> f64 {
 /// `x^(2/5)` for x within 0.09 to 1: the fifth root `y` of `a = x^2`.
 const fn two_fifths_power(x: f64) -> f64 {
     let a = x * x;
-    // Within 0.03 of the root; Halley's step takes a relative error e to about 2 e^3, so three steps reach 1e-15.
+    // Within 0.03 of the root; Halley's step takes a relative error e to about 2 e^3, so three
+    // steps reach 1e-15.
     let mut y = 0.285 + x * (1.24 - 0.54 * x);
     let mut i = 0;
     while i < 3 {
@@ -207,7 +221,8 @@ mod tests {
     fn both_ways_match_powf() {
         for x in unit_interval() {
             let decoded = if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
-            let encoded = if x <= 0.003_130_8 { x * 12.92 } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+            let encoded =
+                if x <= 0.003_130_8 { x * 12.92 } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
             assert!((decode(x) - decoded).abs() < 1e-12, "decode {x}: {} {decoded}", decode(x));
             assert!((encode(x) - encoded).abs() < 1e-12, "encode {x}: {} {encoded}", encode(x));
         }
@@ -215,7 +230,9 @@ mod tests {
 
     #[test]
     fn out_of_range_is_clamped() {
-        for (value, expected) in [(f32::NAN, 0.0), (-1.0, 0.0), (f32::INFINITY, 1.0), (1.5, 1.0), (1.0, 1.0)] {
+        for (value, expected) in
+            [(f32::NAN, 0.0), (-1.0, 0.0), (f32::INFINITY, 1.0), (1.5, 1.0), (1.0, 1.0)]
+        {
             assert_eq!(srgb_from_linear(value), expected);
             assert_eq!(linear_from_srgb(value), expected);
             assert_eq!(srgb8_from_linear(value), if expected == 0.0 { 0 } else { 255 });
@@ -225,7 +242,12 @@ mod tests {
     #[test]
     fn each_byte_begins_where_rounding_says() {
         for (i, &threshold) in THRESHOLDS[..255].iter().enumerate() {
-            let around = [threshold.next_down().next_down(), threshold.next_down(), threshold, threshold.next_up()];
+            let around = [
+                threshold.next_down().next_down(),
+                threshold.next_down(),
+                threshold,
+                threshold.next_up(),
+            ];
             let expected = around.map(nearest_byte);
             assert_eq!(around.map(srgb8_from_linear), expected, "threshold {i}");
             assert_eq!([expected[1], expected[2]], [i as u8, i as u8 + 1], "threshold {i}");
@@ -243,7 +265,11 @@ mod tests {
     #[test]
     fn four_pixels_are_their_bytes() {
         let around = |c: f32| [c.next_down(), c, c.next_up()];
-        let near = THRESHOLDS[..255].iter().copied().chain([0.003_130_8, LEAST_POWER, 1.0]).flat_map(around);
+        let near = THRESHOLDS[..255]
+            .iter()
+            .copied()
+            .chain([0.003_130_8, LEAST_POWER, 1.0])
+            .flat_map(around);
         let all = (0..=1.01_f32.to_bits()).step_by(997).map(f32::from_bits).chain(near);
         let odd = [f32::NAN, -1.0, -0.0, f32::INFINITY, f32::NEG_INFINITY, 2.0];
         let numbers: Vec<_> = all.chain(odd).collect();

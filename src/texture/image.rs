@@ -45,7 +45,8 @@ impl ColorImage {
 }
 
 impl HeightImage {
-    /// An image from a function of column and row (from the bottom) to a height, 0 (deepest) to 1 (on the polygon).
+    /// An image from a function of column and row (from the bottom) to a height, 0 (deepest) to 1
+    /// (on the polygon).
     pub fn from_fn(width: u32, height: u32, mut h: impl FnMut(u32, u32) -> f32) -> Self {
         let pack = |h: f32| (h.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16;
         let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));

@@ -1,13 +1,14 @@
 //! One level of a pyramid: packed texels, once with rows along u and once with rows along v.
 //!
-//! A texel is two words, `red | green << 16` and `blue | height << 16`, each 0 to [`FULL`] in linear light or height, and,
-//! where normals are kept, a third word (see [`pack_normal`]).
+//! A texel is two words, `red | green << 16` and `blue | height << 16`, each 0 to [`FULL`] in
+//! linear light or height, and, where normals are kept, a third word (see [`pack_normal`]).
 
 use super::rows::Rows;
 use crate::simd::{TexelLanes, as_signed, u32x8};
 
-/// What a packed colour's `color_scale`, or a height on the polygon, is stored as. Fifteen of the sixteen bits: then the
-/// difference of two texels is a signed 16-bit number, and lanes interpolate two channels of a texel at once.
+/// What a packed colour's `color_scale`, or a height on the polygon, is stored as. Fifteen of the
+/// sixteen bits: then the difference of two texels is a signed 16-bit number, and lanes interpolate
+/// two channels of a texel at once.
 pub const FULL: u32 = 32767;
 
 /// [`FULL`] as a number.
@@ -18,8 +19,8 @@ pub(crate) const FULL_F32: f32 = FULL as f32;
 pub struct Texel {
     /// Linear RGB: [`FULL`] stands for the surface's colour scale.
     pub color: [f32; 3],
-    /// Normal in the frame of the texture: x along u, y along v, z off the surface; a mean is shorter than one where
-    /// normals differ.
+    /// Normal in the frame of the texture: x along u, y along v, z off the surface; a mean is
+    /// shorter than one where normals differ.
     pub normal: [f32; 3],
 }
 
@@ -34,8 +35,8 @@ impl Texel {
     }
 }
 
-/// One level of a [`Surface`](super::Surface)'s pyramid. Columns and rows are those of the endless pattern: any number
-/// stands for a texel, by the surface's [`Wrap`](super::Wrap).
+/// One level of a [`Surface`](super::Surface)'s pyramid. Columns and rows are those of the endless
+/// pattern: any number stands for a texel, by the surface's [`Wrap`](super::Wrap).
 #[derive(Clone, Debug)]
 pub struct Level {
     texels_per_repeat: [f32; 2],
@@ -57,7 +58,8 @@ impl Level {
         Self { rows: self.rows.each_ref().map(|rows| rows.in_color(color)), ..*self }
     }
 
-    /// Texels that are stored along u and along v before the pattern wraps: two repeats of a mirrored texture, else one.
+    /// Texels that are stored along u and along v before the pattern wraps: two repeats of a
+    /// mirrored texture, else one.
     pub fn size(&self) -> [usize; 2] {
         [self.rows[0].width(), self.rows[0].height()]
     }
@@ -118,6 +120,8 @@ pub(crate) fn unpack_normal(word: u32) -> [f32; 3] {
 /// [`unpack_normal`] of eight words.
 pub(crate) fn unpack_normals(words: u32x8) -> [TexelLanes; 3] {
     let number = |bits: u32x8| TexelLanes::from_i32x8(as_signed(bits));
-    let [x, y, z] = [words & u32x8::splat(2047), words >> 11_u32 & u32x8::splat(2047), words >> 22_u32].map(number);
+    let [x, y, z] =
+        [words & u32x8::splat(2047), words >> 11_u32 & u32x8::splat(2047), words >> 22_u32]
+            .map(number);
     [x * (1.0 / 1023.0) - 1.0, y * (1.0 / 1023.0) - 1.0, z * (1.0 / 511.0) - 1.0]
 }

@@ -1,7 +1,7 @@
 //! Stored texels: images as they are loaded, and the packed pyramid that the filters read.
 //!
-//! Everything is linear. Rows are stored bottom up: row 0 holds v = 0, so that texel `i` of a row of `n` lies at
-//! `(i + 0.5) / n` repeats in both directions.
+//! Everything is linear. Rows are stored bottom up: row 0 holds v = 0, so that texel `i` of a row
+//! of `n` lies at `(i + 0.5) / n` repeats in both directions.
 
 mod color;
 mod image;

@@ -1,7 +1,8 @@
 //! Builds the mip levels of a surface.
 //!
-//! Each level halves both sides (rounding down, at least 1). A texel is the mean of the area it covers in the level
-//! before, with fractional weights where the size is odd, so any size works and a repeating pattern still repeats.
+//! Each level halves both sides (rounding down, at least 1). A texel is the mean of the area it
+//! covers in the level before, with fractional weights where the size is odd, so any size works and
+//! a repeating pattern still repeats.
 
 use super::level::{FULL, FULL_F32, Level, pack_normal, unpack_normal};
 use super::rows::{PackedTexel, Rows};
@@ -9,7 +10,12 @@ use super::wrap::{Wrap, wrap_index};
 use rayon::prelude::*;
 
 /// All levels, the finest first, of a pattern as it is stored: a mirrored one spans two repeats.
-pub(super) fn build(texels: Vec<PackedTexel>, size: [usize; 2], wrap: Wrap, num_planes: usize) -> Vec<Level> {
+pub(super) fn build(
+    texels: Vec<PackedTexel>,
+    size: [usize; 2],
+    wrap: Wrap,
+    num_planes: usize,
+) -> Vec<Level> {
     let mut levels = Vec::new();
     let (mut texels, mut size) = (texels, size);
     loop {
@@ -67,9 +73,16 @@ fn pack([r, g, b, h, x, y, z]: [f32; 7]) -> PackedTexel {
 }
 
 /// Writes the unit normals of the height field, by central differences, into the texels.
-pub(super) fn normals_from_heights(texels: &mut [PackedTexel], [w, h]: [usize; 2], wrap: Wrap, relief_depth: f32) {
-    let fold = |i: i32, n: usize| wrap_index(if wrap == Wrap::Mirror { Wrap::Clamp } else { wrap }, i, n);
-    let heights: Vec<f32> = texels.iter().map(|texel| (texel[1] >> 16) as f32 * (relief_depth / FULL_F32)).collect();
+pub(super) fn normals_from_heights(
+    texels: &mut [PackedTexel],
+    [w, h]: [usize; 2],
+    wrap: Wrap,
+    relief_depth: f32,
+) {
+    let fold =
+        |i: i32, n: usize| wrap_index(if wrap == Wrap::Mirror { Wrap::Clamp } else { wrap }, i, n);
+    let heights: Vec<f32> =
+        texels.iter().map(|texel| (texel[1] >> 16) as f32 * (relief_depth / FULL_F32)).collect();
     texels.par_chunks_exact_mut(w).enumerate().for_each(|(y, row)| {
         let (below, above) = (fold(y as i32 - 1, h) * w, fold(y as i32 + 1, h) * w);
         for (x, texel) in row.iter_mut().enumerate() {
@@ -82,8 +95,13 @@ pub(super) fn normals_from_heights(texels: &mut [PackedTexel], [w, h]: [usize; 2
     });
 }
 
-/// The texture and its mirror images: twice as wide and high, to be repeated. Normals are mirrored too.
-pub(super) fn mirrored(texels: Vec<PackedTexel>, w: usize, h: usize) -> (Vec<PackedTexel>, [usize; 2]) {
+/// The texture and its mirror images: twice as wide and high, to be repeated. Normals are mirrored
+/// too.
+pub(super) fn mirrored(
+    texels: Vec<PackedTexel>,
+    w: usize,
+    h: usize,
+) -> (Vec<PackedTexel>, [usize; 2]) {
     let mut all = Vec::with_capacity(4 * w * h);
     for y in 0..2 * h {
         for x in 0..2 * w {
@@ -92,7 +110,11 @@ pub(super) fn mirrored(texels: Vec<PackedTexel>, w: usize, h: usize) -> (Vec<Pac
             let j = if flip_y { 2 * h - 1 - y } else { y };
             let [a, b, n] = texels[j * w + i];
             let [nx, ny, nz] = unpack_normal(n);
-            all.push([a, b, pack_normal([if flip_x { -nx } else { nx }, if flip_y { -ny } else { ny }, nz])]);
+            all.push([
+                a,
+                b,
+                pack_normal([if flip_x { -nx } else { nx }, if flip_y { -ny } else { ny }, nz]),
+            ]);
         }
     }
     (all, [2 * w, 2 * h])

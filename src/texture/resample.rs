@@ -1,4 +1,5 @@
-//! Brings maps of different sizes to one: bilinear between texel centres, the identity where the size is the same.
+//! Brings maps of different sizes to one: bilinear between texel centres, the identity where the
+//! size is the same.
 
 use super::rows::PackedTexel;
 use super::wrap::wrap_index;
@@ -57,7 +58,11 @@ fn taps(wrap: Wrap, i: usize, num_to: usize, num_from: usize) -> Taps {
             wrap_index(wrap, i, num_from)
         }
     };
-    Taps { near: fold(floor as i32), far: fold(floor as i32 + 1), towards_far: (place - floor) as f32 }
+    Taps {
+        near: fold(floor as i32),
+        far: fold(floor as i32 + 1),
+        towards_far: (place - floor) as f32,
+    }
 }
 
 /// Calls `write` on every texel with the map's value there.
@@ -79,7 +84,8 @@ pub(super) fn fill<T: Texels>(
             write(
                 texel,
                 std::array::from_fn(|i| {
-                    let (low, high) = (lerp(a[i], b[i], u.towards_far), lerp(c[i], d[i], u.towards_far));
+                    let (low, high) =
+                        (lerp(a[i], b[i], u.towards_far), lerp(c[i], d[i], u.towards_far));
                     (low + (high - low) * v.towards_far + 0.5) as u32
                 }),
             );

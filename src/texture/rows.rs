@@ -1,7 +1,8 @@
 //! The texels of a level row by row, in an order made for sweeps.
 //!
-//! A row stores its words plane by plane, with an apron of [`APRON`] texels beyond its end and, where the pattern does not
-//! repeat, before its beginning, so that any run of that many neighbouring texels is one contiguous load per plane:
+//! A row stores its words plane by plane, with an apron of [`APRON`] texels beyond its end and,
+//! where the pattern does not repeat, before its beginning, so that any run of that many
+//! neighbouring texels is one contiguous load per plane:
 //!
 //! ```text
 //!           lead     width          APRON
@@ -39,7 +40,13 @@ const BLOCK: usize = 16;
 
 impl Rows {
     /// Rows of texels that are given row by row.
-    pub(super) fn new(width: usize, height: usize, wrap: Wrap, num_planes: usize, texels: &[PackedTexel]) -> Self {
+    pub(super) fn new(
+        width: usize,
+        height: usize,
+        wrap: Wrap,
+        num_planes: usize,
+        texels: &[PackedTexel],
+    ) -> Self {
         Self::filled([width, height], wrap, num_planes, 1, |y, plane, lines| {
             let texels = &texels[y * width..][..width];
             lines[0].iter_mut().zip(texels).for_each(|(word, texel)| *word = texel[plane]);
@@ -48,21 +55,30 @@ impl Rows {
 
     /// The same texels with rows that run along columns.
     pub(super) fn turned(&self) -> Self {
-        Self::filled([self.height, self.width], self.wrap, self.num_planes, BLOCK, |x, plane, columns| {
-            let (first, stride) = (self.lead() + plane * self.stride() + x, self.stride() * self.num_planes);
-            for y in 0..self.height {
-                let words = &self.words[first + y * stride..];
-                columns.iter_mut().zip(words).for_each(|(column, word)| column[y] = *word);
-            }
-        })
+        Self::filled(
+            [self.height, self.width],
+            self.wrap,
+            self.num_planes,
+            BLOCK,
+            |x, plane, columns| {
+                let (first, stride) =
+                    (self.lead() + plane * self.stride() + x, self.stride() * self.num_planes);
+                for y in 0..self.height {
+                    let words = &self.words[first + y * stride..];
+                    columns.iter_mut().zip(words).for_each(|(column, word)| column[y] = *word);
+                }
+            },
+        )
     }
 
     /// The same rows with every texel in one packed colour.
     pub(super) fn in_color(&self, [red, green, blue]: [u32; 3]) -> Self {
-        let words = self.words.iter().enumerate().map(|(i, word)| match i / self.stride() % self.num_planes {
-            0 => red | green << 16,
-            1 => blue | word & 0xffff_0000,
-            _ => *word,
+        let words = self.words.iter().enumerate().map(|(i, word)| {
+            match i / self.stride() % self.num_planes {
+                0 => red | green << 16,
+                1 => blue | word & 0xffff_0000,
+                _ => *word,
+            }
         });
         Self { words: words.collect(), ..*self }
     }
@@ -80,15 +96,18 @@ impl Rows {
         let mut words: Arc<[u32]> = std::iter::repeat_n(0, stride * num_planes * height).collect();
         let rows = Arc::get_mut(&mut words).expect("nobody shares it yet");
         let apron: Vec<_> = (0..lead).chain(lead + width..stride).collect();
-        let apron = apron.into_iter().map(|i| (i, lead + wrap_index(wrap, i as i32 - lead as i32, width)));
+        let apron =
+            apron.into_iter().map(|i| (i, lead + wrap_index(wrap, i as i32 - lead as i32, width)));
         let apron: Vec<(usize, usize)> = apron.collect();
         rows.par_chunks_mut(stride * num_planes * at_once).enumerate().for_each(|(block, rows)| {
             for plane in 0..num_planes {
                 let of_plane = rows.chunks_exact_mut(stride).skip(plane).step_by(num_planes);
-                let mut lines: Vec<&mut [u32]> = of_plane.map(|row| &mut row[lead..lead + width]).collect();
+                let mut lines: Vec<&mut [u32]> =
+                    of_plane.map(|row| &mut row[lead..lead + width]).collect();
                 fill(block * at_once, plane, &mut lines);
             }
-            rows.chunks_exact_mut(stride).for_each(|row| apron.iter().for_each(|&(to, from)| row[to] = row[from]));
+            rows.chunks_exact_mut(stride)
+                .for_each(|row| apron.iter().for_each(|&(to, from)| row[to] = row[from]));
         });
         all.words = words;
         all
@@ -109,7 +128,9 @@ impl Rows {
         let x = wrap_index(self.wrap, x, self.width) + self.lead();
         let row = self.row(y);
         let stride = self.stride();
-        std::array::from_fn(|plane| if plane < self.num_planes { row[plane * stride + x] } else { 0 })
+        std::array::from_fn(
+            |plane| if plane < self.num_planes { row[plane * stride + x] } else { 0 },
+        )
     }
 
     /// The words of a row of the endless pattern, all planes.
@@ -119,7 +140,8 @@ impl Rows {
         &self.words[start..start + self.pitch()]
     }
 
-    /// Where a run of up to [`APRON`] texels that begins at column `x` of the endless pattern starts within a plane.
+    /// Where a run of up to [`APRON`] texels that begins at column `x` of the endless pattern
+    /// starts within a plane.
     #[inline(always)]
     pub(crate) fn run_start(&self, x: i32) -> usize {
         match self.wrap {
@@ -146,7 +168,8 @@ impl Rows {
         wrap_index(self.wrap, y, self.height) * self.pitch()
     }
 
-    /// Where the run of up to [`APRON`] texels that begins at a column and row of the endless pattern starts among all words.
+    /// Where the run of up to [`APRON`] texels that begins at a column and row of the endless
+    /// pattern starts among all words.
     #[inline(always)]
     pub(crate) fn start_at(&self, x: i32, y: i32) -> usize {
         self.row_start(y) + self.run_start(x)
@@ -168,7 +191,8 @@ impl Rows {
         self.lead() + self.width + APRON
     }
 
-    /// Eight neighbouring words of a row, from `start`: [`Self::run_start`] plus a multiple of [`Self::stride`].
+    /// Eight neighbouring words of a row, from `start`: [`Self::run_start`] plus a multiple of
+    /// [`Self::stride`].
     #[inline(always)]
     pub(crate) fn run(row: &[u32], start: usize) -> u32x8 {
         let lanes: &[u32; 8] = row[start..start + 8].try_into().expect("a slice of eight");
@@ -187,7 +211,8 @@ impl Rows {
         self.num_planes == 3
     }
 
-    /// The heights, 0 to [`FULL`](super::FULL), at a stored row's column and the one after it; columns of a clamped pattern begin at -1.
+    /// The heights, 0 to [`FULL`](super::FULL), at a stored row's column and the one after it;
+    /// columns of a clamped pattern begin at -1.
     #[inline(always)]
     pub(crate) fn two_heights(&self, x: i32, y: i32) -> [u32; 2] {
         let stride = self.stride();

@@ -6,7 +6,8 @@ use super::wrap::Wrap;
 use super::{ColorImage, HeightImage, NormalImage, pyramid, resample};
 use crate::error::{Error, Result};
 
-/// What a [`Surface`] is made from. Maps may differ in size; all are brought to the largest width and height.
+/// What a [`Surface`] is made from. Maps may differ in size; all are brought to the largest width
+/// and height.
 #[derive(Clone, Debug)]
 pub struct SurfaceMaps {
     /// Colour; `None` is white.
@@ -25,7 +26,14 @@ pub struct SurfaceMaps {
 
 impl Default for SurfaceMaps {
     fn default() -> Self {
-        Self { albedo: None, height: None, normal: None, wrap: Wrap::Repeat, relief_depth: 0.05, keep_normals: true }
+        Self {
+            albedo: None,
+            height: None,
+            normal: None,
+            wrap: Wrap::Repeat,
+            relief_depth: 0.05,
+            keep_normals: true,
+        }
     }
 }
 
@@ -42,14 +50,16 @@ impl Surface {
     /// Packs the maps and builds the pyramid.
     ///
     /// # Errors
-    /// Names a map whose size is zero, above 32768, or not that of its texels, or a depth out of range.
+    /// Names a map whose size is zero, above 32768, or not that of its texels, or a depth out of
+    /// range.
     pub fn new(maps: SurfaceMaps) -> Result<Self> {
         let [width, height] = common_size(&maps)?;
         let is_flat = maps.height.is_none() || maps.relief_depth == 0.0;
         let has_normals = maps.keep_normals && (maps.normal.is_some() || !is_flat);
         let SurfaceMaps { albedo, height: heights, normal, wrap, relief_depth, .. } = maps;
         let color_scale = albedo.as_ref().map_or(1.0, |image| image.scale);
-        let mut texels = vec![[FULL | FULL << 16, FULL | FULL << 16, 0] as PackedTexel; width * height];
+        let mut texels =
+            vec![[FULL | FULL << 16, FULL | FULL << 16, 0] as PackedTexel; width * height];
         if let Some(image) = albedo {
             resample::fill(&mut texels, [width, height], wrap, &image, |texel, color| {
                 let [r, g, b] = color.map(stored);
@@ -69,8 +79,11 @@ impl Surface {
             pyramid::normals_from_heights(&mut texels, [width, height], wrap, relief_depth);
         }
         let is_mirrored = wrap == Wrap::Mirror;
-        let (texels, size) =
-            if is_mirrored { pyramid::mirrored(texels, width, height) } else { (texels, [width, height]) };
+        let (texels, size) = if is_mirrored {
+            pyramid::mirrored(texels, width, height)
+        } else {
+            (texels, [width, height])
+        };
         let num_planes = if has_normals { 3 } else { 2 };
         Ok(Self {
             levels: pyramid::build(texels, size, wrap, num_planes),
@@ -89,9 +102,11 @@ impl Surface {
     /// [`Filter::Horizon`](crate::Filter::Horizon) may be made from another one.
     pub fn with_level_colors(&self, colors: &[[f32; 3]]) -> Self {
         let packed = |c: f32| (c / self.color_scale * FULL_F32 + 0.5).clamp(0.0, FULL_F32) as u32;
-        let levels = self.levels.iter().enumerate().map(|(i, level)| match colors.get(i).or(colors.last()) {
-            Some(color) => level.in_color(color.map(packed)),
-            None => level.clone(),
+        let levels = self.levels.iter().enumerate().map(|(i, level)| {
+            match colors.get(i).or(colors.last()) {
+                Some(color) => level.in_color(color.map(packed)),
+                None => level.clone(),
+            }
         });
         Self { levels: levels.collect(), ..*self }
     }
@@ -119,7 +134,8 @@ impl Surface {
         self.wrap
     }
 
-    /// Depth of the deepest relief below the polygon in texture repeats, 0 to 1; 0 where the surface is flat.
+    /// Depth of the deepest relief below the polygon in texture repeats, 0 to 1; 0 where the
+    /// surface is flat.
     pub fn relief_depth(&self) -> f32 {
         self.relief_depth
     }

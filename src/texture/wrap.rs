@@ -12,7 +12,8 @@ pub enum Wrap {
     Clamp,
 }
 
-/// The stored index of place `i` of an endless row of period `n`. A mirrored pattern is stored whole, so it repeats.
+/// The stored index of place `i` of an endless row of period `n`. A mirrored pattern is stored
+/// whole, so it repeats.
 #[inline(always)]
 pub(crate) fn wrap_index(wrap: Wrap, i: i32, n: usize) -> usize {
     let n = n as i32;

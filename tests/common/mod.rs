@@ -29,8 +29,13 @@ pub fn rough_surface(width: u32, height: u32, wrap: Wrap, seed: u64) -> Surface 
     let mut random = Random(seed);
     let albedo = ColorImage::from_fn(width, height, |_, _| [0; 3].map(|_| random.within(0.0, 1.0)));
     let heights = HeightImage::from_fn(width, height, |_, _| random.within(0.0, 1.0));
-    let maps =
-        SurfaceMaps { albedo: Some(albedo), height: Some(heights), wrap, relief_depth: 0.1, ..Default::default() };
+    let maps = SurfaceMaps {
+        albedo: Some(albedo),
+        height: Some(heights),
+        wrap,
+        relief_depth: 0.1,
+        ..Default::default()
+    };
     Surface::new(maps).expect("valid maps")
 }
 
@@ -38,10 +43,12 @@ pub fn rough_surface(width: u32, height: u32, wrap: Wrap, seed: u64) -> Surface 
 pub fn flat_surface(width: u32, height: u32, wrap: Wrap, seed: u64) -> Surface {
     let mut random = Random(seed);
     let albedo = ColorImage::from_fn(width, height, |_, _| [0; 3].map(|_| random.within(0.0, 1.0)));
-    Surface::new(SurfaceMaps { albedo: Some(albedo), wrap, ..Default::default() }).expect("valid maps")
+    Surface::new(SurfaceMaps { albedo: Some(albedo), wrap, ..Default::default() })
+        .expect("valid maps")
 }
 
-/// A floor of `2 * half` units a side, `repeats` texture repeats a unit, seen from above its near edge.
+/// A floor of `2 * half` units a side, `repeats` texture repeats a unit, seen from above its near
+/// edge.
 pub fn floor_scene(surface: Surface, repeats: f32) -> Scene {
     let half = 20.0;
     let corners = [[-half, half], [half, half], [half, -half], [-half, -half]];
@@ -65,7 +72,8 @@ pub fn floor_scene(surface: Surface, repeats: f32) -> Scene {
 pub fn cobbles(size: u32, stones: u32) -> SurfaceMaps {
     let side = size as f32 / stones as f32;
     let noise = |x: u32, y: u32| {
-        let hash = (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
+        let hash =
+            (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77)).wrapping_mul(0xC2B2_AE3D);
         ((hash ^ hash >> 15) & 0xffff) as f32 / 65535.0
     };
     let shape = move |x: u32, y: u32| {
@@ -80,10 +88,16 @@ pub fn cobbles(size: u32, stones: u32) -> SurfaceMaps {
     });
     let albedo = ColorImage::from_fn(size, size, |x, y| {
         let (dome, stone) = shape(x, y);
-        let light = (0.08 + 0.5 * dome.min(0.6) * (0.5 + stone)) * (0.7 + 0.3 * noise(x + 3, y + 5));
+        let light =
+            (0.08 + 0.5 * dome.min(0.6) * (0.5 + stone)) * (0.7 + 0.3 * noise(x + 3, y + 5));
         [light, light * (0.8 + 0.2 * stone), light * 0.8]
     });
-    SurfaceMaps { albedo: Some(albedo), height: Some(height), relief_depth: 0.06, ..Default::default() }
+    SurfaceMaps {
+        albedo: Some(albedo),
+        height: Some(height),
+        relief_depth: 0.06,
+        ..Default::default()
+    }
 }
 
 /// The filter with another limit of the anisotropy; as it is where it has none.
@@ -92,7 +106,11 @@ pub fn with_limit(filter: Filter, max_anisotropy: f32) -> Filter {
         Filter::Ewa(ewa) => Filter::Ewa(Ewa { max_anisotropy, ..ewa }),
         Filter::Visible(visible) => Filter::Visible(Visible { max_anisotropy, ..visible }),
         Filter::Horizon(horizon) => Filter::Horizon(Horizon { max_anisotropy, ..horizon }),
-        Filter::Nearest | Filter::Bilinear | Filter::Trilinear(_) | Filter::Parallax(_) | Filter::Truth(_) => filter,
+        Filter::Nearest
+        | Filter::Bilinear
+        | Filter::Trilinear(_)
+        | Filter::Parallax(_)
+        | Filter::Truth(_) => filter,
     }
 }
 

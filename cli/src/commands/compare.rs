@@ -102,7 +102,9 @@ impl Report {
         };
         let Self { largest_error, x, y, channel, .. } = self;
         let bytes = largest_error * 255.0;
-        lines += &format!("largest error  {largest_error:.4} ({bytes:.1} of 255) in {channel} at x {x}, y {y}\n");
+        lines += &format!(
+            "largest error  {largest_error:.4} ({bytes:.1} of 255) in {channel} at x {x}, y {y}\n"
+        );
         lines += &format!("SSIM           {:.4}\n", self.ssim);
         if let Some(path) = &options.heatmap {
             lines += &format!("heat map       {}, 0 to {}\n", path.display(), options.heatmap_max);

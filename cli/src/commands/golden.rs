@@ -36,17 +36,22 @@ pub(crate) fn run(options: &CompareOptions, folder: &Path) -> Result<ExitCode, R
     let mut all_passed = true;
     for (file, golden) in pairs(options, folder)? {
         let verdict = match std::fs::read(&file) {
-            Ok(bytes) => match judge(&golden, &bytes, thresholds, on_difference, options.max_pixels)? {
-                Verdict::Failed(reason) => Verdict::Failed(format!("{reason}, or accept it with {ACCEPT}=1")),
-                verdict => verdict,
-            },
+            Ok(bytes) => {
+                match judge(&golden, &bytes, thresholds, on_difference, options.max_pixels)? {
+                    Verdict::Failed(reason) => {
+                        Verdict::Failed(format!("{reason}, or accept it with {ACCEPT}=1"))
+                    }
+                    verdict => verdict,
+                }
+            }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound && golden.is_file() => {
                 Verdict::Failed("there is no such image to compare".into())
             }
             Err(e) => return Err(Refusal::file(&file, e)),
         };
         all_passed &= !matches!(verdict, Verdict::Failed(_));
-        let text = if options.json { json(&file, &golden, &verdict)? } else { line(&file, &verdict) };
+        let text =
+            if options.json { json(&file, &golden, &verdict)? } else { line(&file, &verdict) };
         output::print(text.as_bytes())?;
     }
     Ok(if all_passed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -60,11 +65,16 @@ fn pairs(options: &CompareOptions, folder: &Path) -> Result<Vec<(PathBuf, PathBu
             let names = images(given)?.into_iter().chain(images(folder)?).collect::<BTreeSet<_>>();
             pairs.extend(names.iter().map(|name| (given.join(name), folder.join(name))));
         } else {
-            let name = given.file_name().ok_or_else(|| format!("{}: names no file", given.display()))?;
+            let name =
+                given.file_name().ok_or_else(|| format!("{}: names no file", given.display()))?;
             pairs.push((given.clone(), folder.join(name)));
         }
     }
-    if pairs.is_empty() { Err("--golden: there are no images to compare".into()) } else { Ok(pairs) }
+    if pairs.is_empty() {
+        Err("--golden: there are no images to compare".into())
+    } else {
+        Ok(pairs)
+    }
 }
 
 fn images(folder: &Path) -> Result<Vec<PathBuf>, Refusal> {

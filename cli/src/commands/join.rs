@@ -1,7 +1,8 @@
 //! `basrelief join`: parts of a picture to the whole, row by row.
 //!
-//! Parts are PNG files that say where they lie. They are opened when the rows reach them and closed after their last
-//! row, so memory holds a row of the picture, and as many files are open as parts lie side by side.
+//! Parts are PNG files that say where they lie. They are opened when the rows reach them and closed
+//! after their last row, so memory holds a row of the picture, and as many files are open as parts
+//! lie side by side.
 
 use crate::options::join::JoinOptions;
 use crate::output;
@@ -27,7 +28,8 @@ pub(crate) fn run(options: &JoinOptions) -> Result<ExitCode, Refusal> {
     if output::image_format(&options.output)? != Format::Png {
         return Err(Refusal::file(&options.output, "the name must end in .png"));
     }
-    let mut pieces = options.parts.iter().map(|path| Piece::of(path)).collect::<Result<Vec<_>, _>>()?;
+    let mut pieces =
+        options.parts.iter().map(|path| Piece::of(path)).collect::<Result<Vec<_>, _>>()?;
     pieces.sort_by_key(|piece| (piece.part.region.y, piece.part.region.x));
     let [width, height] = check(&pieces)?;
     // As in a picture drawn at once: where no part needs opacity, the whole does not.
@@ -51,9 +53,13 @@ fn check(pieces: &[Piece]) -> Result<[u32; 2], Refusal> {
     if let Some(other) = pieces.iter().find(|piece| piece.part.whole != first.part.whole) {
         let [other_width, other_height] = other.part.whole;
         let (a, b) = (first.path.display(), other.path.display());
-        return Err(format!("{a} is a part of {width}x{height} pixels, {b} of {other_width}x{other_height}").into());
+        return Err(format!(
+            "{a} is a part of {width}x{height} pixels, {b} of {other_width}x{other_height}"
+        )
+        .into());
     }
-    // How far down each column is covered, as runs that end at a column: the next piece must begin there.
+    // How far down each column is covered, as runs that end at a column: the next piece must begin
+    // there.
     let mut covered: Vec<(u32, u32)> = vec![(width, 0)];
     for Piece { part, path, .. } in pieces {
         let Region { x, y, width, height } = part.region;
@@ -61,7 +67,10 @@ fn check(pieces: &[Piece]) -> Result<[u32; 2], Refusal> {
         for &(end, down) in &covered {
             let (from, to) = (start.max(x), end.min(x + width));
             if from < to && down > y {
-                return Err(Refusal::file(path, format_args!("overlaps another part at x {from}, y {y}")));
+                return Err(Refusal::file(
+                    path,
+                    format_args!("overlaps another part at x {from}, y {y}"),
+                ));
             }
             if from < to && down < y {
                 return Err(format!("no part covers x {from}, y {down}").into());
@@ -102,9 +111,14 @@ impl Piece {
         let has_opacity = match (info.color_type, info.bit_depth, info.interlaced) {
             (png::ColorType::Rgb, png::BitDepth::Eight, false) => false,
             (png::ColorType::Rgba, png::BitDepth::Eight, false) => true,
-            _ => return refuse("is not a part that --region drew: its pixels are stored in another way"),
+            _ => {
+                return refuse(
+                    "is not a part that --region drew: its pixels are stored in another way",
+                );
+            }
         };
-        let chunks = info.uncompressed_latin1_text.iter().map(|chunk| (&*chunk.keyword, &*chunk.text));
+        let chunks =
+            info.uncompressed_latin1_text.iter().map(|chunk| (&*chunk.keyword, &*chunk.text));
         match Part::of_chunks([info.width, info.height], chunks) {
             Some(part) => Ok(Self { path: path.into(), part, has_opacity }),
             None => refuse("is not a part that --region drew: it does not say where it lies"),
@@ -139,7 +153,8 @@ impl Rows<'_> {
     /// Row `y`, one row after another.
     fn row(&mut self, y: u32) -> basrelief::Result<Vec<u8>> {
         self.open.retain(|(piece, _)| piece.part.region.y + piece.part.region.height > y);
-        while let Some(piece) = self.pieces.get(self.next).filter(|piece| piece.part.region.y == y) {
+        while let Some(piece) = self.pieces.get(self.next).filter(|piece| piece.part.region.y == y)
+        {
             let reader = open(&piece.path).map_err(|reason| Error::file(&piece.path, reason))?;
             self.open.push((piece, reader));
             self.next += 1;
@@ -150,7 +165,9 @@ impl Rows<'_> {
             let samples = reader.next_row().map_err(|e| Error::file(&piece.path, e))?;
             let samples = samples.ok_or_else(|| Error::file(&piece.path, "has too few rows"))?;
             match (piece.has_opacity, self.has_opacity) {
-                (false, true) => row.extend(samples.data().as_chunks().0.iter().flat_map(|&[r, g, b]| [r, g, b, 255])),
+                (false, true) => row.extend(
+                    samples.data().as_chunks().0.iter().flat_map(|&[r, g, b]| [r, g, b, 255]),
+                ),
                 _ => row.extend_from_slice(samples.data()),
             }
         }

@@ -1,4 +1,5 @@
-//! `basrelief completions` and `basrelief man`: what clap knows of the command line, for shells and readers.
+//! `basrelief completions` and `basrelief man`: what clap knows of the command line, for shells and
+//! readers.
 
 use crate::options::args::Cli;
 use crate::output;
@@ -25,7 +26,8 @@ pub(crate) fn man(folder: Option<&Path>) -> Result<ExitCode, Refusal> {
         return Ok(ExitCode::SUCCESS);
     };
     // The help of a help has no page.
-    let subcommands = command.get_subcommands().filter(|subcommand| subcommand.get_name() != "help");
+    let subcommands =
+        command.get_subcommands().filter(|subcommand| subcommand.get_name() != "help");
     for command in subcommands.chain([&command]) {
         let name = command.get_display_name().unwrap_or(command.get_name());
         output::write(&folder.join(format!("{name}.1")), &page(command)?)?;

@@ -16,7 +16,10 @@ pub(crate) fn run(options: &RenderOptions, view: View) -> Result<ExitCode, Refus
         settings.filter = options.settings.filter.inspected(settings.filter);
     }
     let sequence = options.frames.sequence(options.output.as_deref())?;
-    let is_more = options.stats.is_some() || options.repeat.is_some() || options.json || options.save_scene.is_some();
+    let is_more = options.stats.is_some()
+        || options.repeat.is_some()
+        || options.json
+        || options.save_scene.is_some();
     if is_more || sequence.is_numbered() || settings.region.is_some() {
         let words = "--stats, --repeat, --json, --save-scene, --region and many frames are of pictures, not of --view";
         return Err(words.into());

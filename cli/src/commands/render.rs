@@ -45,16 +45,24 @@ pub(crate) fn run(mut options: RenderOptions) -> Result<ExitCode, Refusal> {
 }
 
 /// What can be written, and how.
-fn check(options: &RenderOptions, settings: &Settings, sequence: &Sequence) -> Result<Way, Refusal> {
+fn check(
+    options: &RenderOptions,
+    settings: &Settings,
+    sequence: &Sequence,
+) -> Result<Way, Refusal> {
     let name = sequence.output();
     if sequence.is_numbered() && options.repeat.is_some() {
         return Err("--repeat: measures one picture, not many frames".into());
     }
-    if options.json && [Some(name), options.stats.as_deref()].into_iter().flatten().any(output::is_stdout) {
+    if options.json
+        && [Some(name), options.stats.as_deref()].into_iter().flatten().any(output::is_stdout)
+    {
         return Err("--json: stdout is taken by --output or --stats".into());
     }
     let others = [("--stats", &options.stats), ("--save-scene", &options.save_scene)];
-    for (option, path) in others.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))) {
+    for (option, path) in
+        others.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?)))
+    {
         if path == name {
             return Err(format!("{option} and --output are both {}", path.display()).into());
         }
@@ -78,7 +86,8 @@ impl Job<'_> {
         let start = Instant::now();
         let mut renderer = self.prepare()?;
         let load_ms = start.elapsed().as_secs_f64() * 1e3;
-        let report = |took| Report::new(took, load_ms, rayon::current_num_threads(), &self.settings);
+        let report =
+            |took| Report::new(took, load_ms, rayon::current_num_threads(), &self.settings);
         let took = self.draw_all(&mut renderer, &report)?;
         if took.is_empty() {
             return Ok(());
@@ -93,7 +102,11 @@ impl Job<'_> {
             [(_, path)] => self.progress.say(&format!("wrote {}", path.display())),
             [(_, first), .., (_, last)] => {
                 let num = self.pictures.len();
-                self.progress.say(&format!("wrote {num} pictures, {} to {}", first.display(), last.display()));
+                self.progress.say(&format!(
+                    "wrote {num} pictures, {} to {}",
+                    first.display(),
+                    last.display()
+                ));
             }
             [] => {}
         }
@@ -109,17 +122,27 @@ impl Job<'_> {
         let camera = loaded.scene.camera;
         let cameras = self.sequence.cameras(camera);
         for (number, _) in self.pictures.iter().filter(|_| self.sequence.is_numbered()) {
-            cameras.camera(*number).validate().map_err(|e| format!("frame {number}: {}", Refusal::from(e)))?;
+            cameras
+                .camera(*number)
+                .validate()
+                .map_err(|e| format!("frame {number}: {}", Refusal::from(e)))?;
         }
         progress.stage("building tables");
         let renderer = Renderer::new(loaded.scene, picture::first_settings(settings, self.way))?;
         if let Some(path) = &options.save_scene {
-            output::write(path, scene_file::text(&options.scene, settings, &camera, path)?.as_bytes())?;
+            output::write(
+                path,
+                scene_file::text(&options.scene, settings, &camera, path)?.as_bytes(),
+            )?;
         }
         Ok(renderer)
     }
 
-    fn draw_all(&self, renderer: &mut Renderer, report: &dyn Fn(Vec<Took>) -> Report) -> Result<Vec<Took>, Refusal> {
+    fn draw_all(
+        &self,
+        renderer: &mut Renderer,
+        report: &dyn Fn(Vec<Took>) -> Report,
+    ) -> Result<Vec<Took>, Refusal> {
         let cameras = self.sequence.cameras(renderer.scene().camera);
         let mut all = Vec::new();
         for (i, (number, path)) in self.pictures.iter().enumerate() {
@@ -128,7 +151,13 @@ impl Job<'_> {
                 true => format!("drawing frame {number} ({} of {})", i + 1, self.pictures.len()),
                 false => "drawing".into(),
             });
-            let took = picture::draw(renderer, &self.settings, path, (self.way, self.options.repeat), &self.progress)?;
+            let took = picture::draw(
+                renderer,
+                &self.settings,
+                path,
+                (self.way, self.options.repeat),
+                &self.progress,
+            )?;
             if self.options.json {
                 let frame = self.sequence.is_numbered().then_some(*number);
                 output::print(&report(took.clone()).of_picture(path, frame).json()?)?;

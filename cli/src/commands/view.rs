@@ -25,7 +25,13 @@ pub(crate) fn run(mut options: ViewerOptions) -> Result<ExitCode, Refusal> {
     loaded.warnings.iter().for_each(|warning| progress.warn(warning));
     drop(progress);
     let load_options = options.scene.load_options(&settings, true);
-    let mut viewer = Viewer::new(loaded.scene, settings, options.settings.filter, options.scene.path(), load_options);
+    let mut viewer = Viewer::new(
+        loaded.scene,
+        settings,
+        options.settings.filter,
+        options.scene.path(),
+        load_options,
+    );
     viewer.split_with(options.split);
     viewer.keep_full_size(options.full_size);
     let threads = num_threads(options.threads);

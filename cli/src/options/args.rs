@@ -14,10 +14,11 @@ use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Draws height-mapped surfaces on the CPU, with the texels that the relief hides left out of the texture filter.
+/// Draws height-mapped surfaces on the CPU, with the texels that the relief hides left out of the
+/// texture filter.
 ///
-/// Without a subcommand it renders: `basrelief` draws the built-in scene to basrelief.png, `basrelief scene.obj -o out.png`
-/// draws a file.
+/// Without a subcommand it renders: `basrelief` draws the built-in scene to basrelief.png,
+/// `basrelief scene.obj -o out.png` draws a file.
 #[derive(Parser)]
 #[command(name = "basrelief", version = version::text(), args_conflicts_with_subcommands = true, max_term_width = 120)]
 #[command(args_override_self = true)]
@@ -48,14 +49,17 @@ pub(crate) enum Command {
     Render(RenderOptions),
     /// Measure how far two images are apart
     ///
-    /// Prints the peak signal-to-noise ratio, the largest error with its pixel and channel, and the structural
-    /// similarity (SSIM), of sRGB-encoded values over the pixels that are opaque in both images. EXR and HDR files are
-    /// taken as linear. With --golden, tests images against those of a folder. Exit code 0; 1 if below --min-psnr or not
-    /// golden; 2 if the images cannot be compared.
+    /// Prints the peak signal-to-noise ratio, the largest error with its pixel and channel, and the
+    /// structural similarity (SSIM), of sRGB-encoded values over the pixels that are opaque in both
+    /// images. EXR and HDR files are taken as linear. With --golden, tests images against those of
+    /// a folder. Exit code 0; 1 if below --min-psnr or not golden; 2 if the images cannot be
+    /// compared.
     Compare(CompareOptions),
-    /// Show what one pixel sees and why: footprint, hidden texels, a cut through the relief, and the formulas' numbers
+    /// Show what one pixel sees and why: footprint, hidden texels, a cut through the relief, and
+    /// the formulas' numbers
     Inspect(InspectOptions),
-    /// Compare all filters on a scene with the truth: time, quality, pictures and charts on one page
+    /// Compare all filters on a scene with the truth: time, quality, pictures and charts on one
+    /// page
     Study(StudyOptions),
     /// Look around a scene in a window
     #[cfg(feature = "viewer")]
@@ -71,8 +75,9 @@ pub(crate) enum Command {
     },
     /// Put the parts of a picture together that --region drew
     ///
-    /// Reads PNG files that `render --region` wrote, which say where they lie, and writes the whole picture as PNG, row by
-    /// row: no picture is too large. The parts must cover the picture and not overlap.
+    /// Reads PNG files that `render --region` wrote, which say where they lie, and writes the whole
+    /// picture as PNG, row by row: no picture is too large. The parts must cover the picture and
+    /// not overlap.
     Join(JoinOptions),
     /// Print the completions of a shell: bash, elvish, fish, powershell or zsh
     Completions {
@@ -101,24 +106,29 @@ impl Cli {
     /// # Errors
     /// Where the command line is wrong, or asks for help.
     pub fn read(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, Ending> {
-        Self::try_parse_from(arguments)
-            .map_err(|e| if e.use_stderr() { Ending::Refused(usage_line(&e).into()) } else { Ending::Help(e) })
+        Self::try_parse_from(arguments).map_err(|e| {
+            if e.use_stderr() { Ending::Refused(usage_line(&e).into()) } else { Ending::Help(e) }
+        })
     }
 
     /// All options of pictures, and all words that they take.
     pub fn words() -> Vec<String> {
         let command = Self::command();
-        let options = command.get_arguments().filter_map(|option| Some(format!("--{}", option.get_long()?)));
+        let options =
+            command.get_arguments().filter_map(|option| Some(format!("--{}", option.get_long()?)));
         let words = command.get_arguments().flat_map(|option| option.get_possible_values());
         options.chain(words.map(|word| word.get_name().to_owned())).collect()
     }
 
-    /// The settings of the picture that is asked for, if one is. Places the camera and the lights of the options in `scene`.
+    /// The settings of the picture that is asked for, if one is. Places the camera and the lights
+    /// of the options in `scene`.
     ///
     /// # Errors
     /// Where a setting is out of its range.
     pub fn picture(self, scene: &mut Scene) -> Result<Option<Settings>, Refusal> {
-        let Command::Render(options) = self.command.unwrap_or(Command::Render(self.render)) else { return Ok(None) };
+        let Command::Render(options) = self.command.unwrap_or(Command::Render(self.render)) else {
+            return Ok(None);
+        };
         options.scene.set(scene);
         options.settings.settings(options.scene.has_lights()).map(Some)
     }
@@ -128,7 +138,9 @@ impl Cli {
 fn usage_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
-    let lines: Vec<&str> = lines.filter(|line| !line.is_empty() && !line.starts_with("For more information")).collect();
+    let lines: Vec<&str> = lines
+        .filter(|line| !line.is_empty() && !line.starts_with("For more information"))
+        .collect();
     lines.join(" ").replace(" tip: ", "; ").trim_start_matches("error: ").to_owned()
 }
 
@@ -144,9 +156,17 @@ mod tests {
 
     #[test]
     fn refusals_are_one_line() {
-        for args in [&["x", "--filter", "no"][..], &["x", "--what"], &["x", "compare", "a"], &["x", "--size", "0x0"]] {
+        for args in [
+            &["x", "--filter", "no"][..],
+            &["x", "--what"],
+            &["x", "compare", "a"],
+            &["x", "--size", "0x0"],
+        ] {
             let line = usage_line(&Cli::try_parse_from(args).err().unwrap());
-            assert!(!line.contains('\n') && !line.contains("Usage") && !line.starts_with("error"), "{line}");
+            assert!(
+                !line.contains('\n') && !line.contains("Usage") && !line.starts_with("error"),
+                "{line}"
+            );
         }
     }
 

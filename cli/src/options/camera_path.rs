@@ -11,9 +11,10 @@
 //! fov = 35.0
 //! ```
 //!
-//! Between two keys every number runs along a cubic Hermite curve over the frames. Its slope at a key is that of the parabola
-//! through the key and its neighbours, at the ends that of the line; where two keys in a row are equal the camera rests, with
-//! slope 0. Only sums and products are used, so that every machine finds the same cameras.
+//! Between two keys every number runs along a cubic Hermite curve over the frames. Its slope at a
+//! key is that of the parabola through the key and its neighbours, at the ends that of the line;
+//! where two keys in a row are equal the camera rests, with slope 0. Only sums and products are
+//! used, so that every machine finds the same cameras.
 
 use crate::options::{file_values, scene_file};
 use crate::refusal::Refusal;
@@ -57,12 +58,20 @@ impl CameraPath {
     pub(crate) fn read(path: &Path) -> Result<Self, Refusal> {
         let PathFile { key: keys } = scene_file::parse(path, &scene_file::read_text(path)?)?;
         let refuse = |reason: String| Err(Refusal::file(path, reason));
-        let [Some(first), Some(last)] = [keys.first(), keys.last()] else { return refuse("has no [[key]]".into()) };
+        let [Some(first), Some(last)] = [keys.first(), keys.last()] else {
+            return refuse("has no [[key]]".into());
+        };
         if let Some(pair) = keys.windows(2).find(|pair| pair[0].frame >= pair[1].frame) {
-            return refuse(format!("the key of frame {} comes after that of {}", pair[1].frame, pair[0].frame));
+            return refuse(format!(
+                "the key of frame {} comes after that of {}",
+                pair[1].frame, pair[0].frame
+            ));
         }
         if last.frame - first.frame >= MAX_FRAMES {
-            return refuse(format!("frames {} to {} are more than {MAX_FRAMES}", first.frame, last.frame));
+            return refuse(format!(
+                "frames {} to {} are more than {MAX_FRAMES}",
+                first.frame, last.frame
+            ));
         }
         Ok(Self { keys })
     }
@@ -74,10 +83,14 @@ impl CameraPath {
 
     /// Where the camera is at the keys, from `start` on.
     pub(crate) fn places(&self, start: &Camera) -> Places {
-        let mut place = [start.eye, start.target, start.up, Vec3::new(start.fov_degrees, 0.0, 0.0)].map(Vec3::as_dvec3);
+        let mut place = [start.eye, start.target, start.up, Vec3::new(start.fov_degrees, 0.0, 0.0)]
+            .map(Vec3::as_dvec3);
         let at_keys = self.keys.iter().map(|key| {
             let given = [key.eye, key.target, key.up, key.fov.map(|fov| Vec3::new(fov, 0.0, 0.0))];
-            place.iter_mut().zip(given).for_each(|(old, new)| *old = new.map_or(*old, Vec3::as_dvec3));
+            place
+                .iter_mut()
+                .zip(given)
+                .for_each(|(old, new)| *old = new.map_or(*old, Vec3::as_dvec3));
             (f64::from(key.frame), place)
         });
         let keys: Vec<(f64, Place)> = at_keys.collect();
@@ -97,7 +110,8 @@ impl Places {
     /// The camera of a frame within the path's range.
     pub(crate) fn camera(&self, frame: u32) -> Camera {
         let frame = f64::from(frame);
-        let end = self.keys.partition_point(|key| key.0 < frame).clamp(1, self.keys.len().max(2) - 1);
+        let end =
+            self.keys.partition_point(|key| key.0 < frame).clamp(1, self.keys.len().max(2) - 1);
         let [eye, target, up, fov] = match self.keys.get(end) {
             Some(_) => self.between(end - 1, frame),
             None => self.keys[0].1,
@@ -115,7 +129,9 @@ impl Places {
         std::array::from_fn(|k| {
             let (leave, arrive) = (self.slopes[i][k] * length, self.slopes[i + 1][k] * length);
             // The weights of the two ends are 1 and 0 at a key, exactly.
-            from[k] * (s * s * (1.0 + 2.0 * t)) + to[k] * (t * t * (1.0 + 2.0 * s)) + (leave * s - arrive * t) * (s * t)
+            from[k] * (s * s * (1.0 + 2.0 * t))
+                + to[k] * (t * t * (1.0 + 2.0 * s))
+                + (leave * s - arrive * t) * (s * t)
         })
     }
 }
@@ -128,10 +144,13 @@ fn slope(keys: &[(f64, Place)], i: usize) -> Place {
     };
     let before: Option<(f64, Place)> = (i > 0).then(|| step(i - 1));
     let after: Option<(f64, Place)> = (i + 1 < keys.len()).then(|| step(i));
-    let rests = |side: &Option<(f64, Place)>| side.is_some_and(|(_, slope)| slope == [DVec3::ZERO; 4]);
+    let rests =
+        |side: &Option<(f64, Place)>| side.is_some_and(|(_, slope)| slope == [DVec3::ZERO; 4]);
     match (before, after) {
         _ if rests(&before) || rests(&after) => [DVec3::ZERO; 4],
-        (Some((a, before)), Some((b, after))) => std::array::from_fn(|k| (before[k] * b + after[k] * a) / (a + b)),
+        (Some((a, before)), Some((b, after))) => {
+            std::array::from_fn(|k| (before[k] * b + after[k] * a) / (a + b))
+        }
         (Some((_, slope)), None) | (None, Some((_, slope))) => slope,
         (None, None) => [DVec3::ZERO; 4],
     }
@@ -155,9 +174,14 @@ mod tests {
     fn path_goes_through_its_keys() {
         let start = Camera { near: 0.25, ..Camera::default() };
         let places = path(KEYS).unwrap().places(&start);
-        let eyes = [(1, [0.0, 1.0, 4.0], 60.0), (11, [3.0, 1.0, 4.0], 40.0), (41, [3.0, 2.0, 0.0], 40.0)];
+        let eyes =
+            [(1, [0.0, 1.0, 4.0], 60.0), (11, [3.0, 1.0, 4.0], 40.0), (41, [3.0, 2.0, 0.0], 40.0)];
         for (frame, eye, fov_degrees) in eyes {
-            assert_eq!(places.camera(frame), Camera { eye: eye.into(), fov_degrees, ..start }, "{frame}");
+            assert_eq!(
+                places.camera(frame),
+                Camera { eye: eye.into(), fov_degrees, ..start },
+                "{frame}"
+            );
         }
         // Keys in a row that are equal: the camera rests.
         assert!((41..=50).all(|frame| places.camera(frame) == places.camera(41)));
@@ -176,7 +200,8 @@ mod tests {
 
     #[test]
     fn one_key_is_a_path() {
-        let places = path("[[key]]\nframe = 7\neye = [1, 2, 3]\n").unwrap().places(&Camera::default());
+        let places =
+            path("[[key]]\nframe = 7\neye = [1, 2, 3]\n").unwrap().places(&Camera::default());
         assert_eq!(places.camera(7).eye, Vec3::new(1.0, 2.0, 3.0));
     }
 

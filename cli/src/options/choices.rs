@@ -18,9 +18,13 @@ const fn described(filter: &Filter) -> (&'static str, &'static str) {
         Filter::Bilinear => ("bilinear", "Four texels; flickers in the distance"),
         Filter::Trilinear(_) => ("trilinear", "Mip levels; blurs at grazing angles"),
         Filter::Ewa(_) => ("ewa", "All texels of the pixel's ellipse, hidden ones too"),
-        Filter::Visible(_) => ("visible", "The texels of the ellipse that the relief does not hide"),
+        Filter::Visible(_) => {
+            ("visible", "The texels of the ellipse that the relief does not hide")
+        }
         Filter::Horizon(_) => ("horizon", "Visible texels by their visible length, in one sweep"),
-        Filter::Parallax(_) => ("parallax", "Common practice: 32 steps, then 16x anisotropy; --samples rays a pixel"),
+        Filter::Parallax(_) => {
+            ("parallax", "Common practice: 32 steps, then 16x anisotropy; --samples rays a pixel")
+        }
         Filter::Truth(_) => ("truth", "Supersampled: --samples exact rays a pixel; slow"),
     }
 }
@@ -66,8 +70,10 @@ pub(crate) const HEIGHT_SENSES: &[Choice<HeightSense>] = &[
     ("white-deep", HeightSense::WhiteDeep, "A depth map: white is deepest"),
 ];
 
-pub(crate) const NORMAL_YS: &[Choice<NormalY>] =
-    &[("up", NormalY::Up, "As in OpenGL, glTF and Blender"), ("down", NormalY::Down, "As in DirectX and Unreal")];
+pub(crate) const NORMAL_YS: &[Choice<NormalY>] = &[
+    ("up", NormalY::Up, "As in OpenGL, glTF and Blender"),
+    ("down", NormalY::Down, "As in DirectX and Unreal"),
+];
 
 pub(crate) const WRAPS: &[Choice<Wrap>] = &[
     ("repeat", Wrap::Repeat, "The texture again"),
@@ -112,7 +118,10 @@ words! {
 }
 
 /// Writes the word of a value, for `serde(with = "choices")`.
-pub(crate) fn serialize<T: Words, S: Serializer>(value: &Option<T>, to: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn serialize<T: Words, S: Serializer>(
+    value: &Option<T>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
     match value {
         Some(value) => to.serialize_some(word(value)),
         None => to.serialize_none(),
@@ -120,7 +129,9 @@ pub(crate) fn serialize<T: Words, S: Serializer>(value: &Option<T>, to: S) -> Re
 }
 
 /// Reads the value of a word, for `serde(with = "choices")`.
-pub(crate) fn deserialize<'de, T: Words, D: Deserializer<'de>>(from: D) -> Result<Option<T>, D::Error> {
+pub(crate) fn deserialize<'de, T: Words, D: Deserializer<'de>>(
+    from: D,
+) -> Result<Option<T>, D::Error> {
     let given = String::deserialize(from)?;
     let known = || T::CHOICES.iter().map(|(word, ..)| *word).collect::<Vec<_>>().join(", ");
     let found = T::CHOICES.iter().find(|(word, ..)| *word == given).map(|&(_, value, _)| value);
@@ -144,7 +155,10 @@ where
 
 /// The word that stands for `value`.
 pub(crate) fn word<T: Words>(value: &T) -> &'static str {
-    T::CHOICES.iter().find(|(_, known, _)| known.is_same_choice(value)).map_or("?", |&(word, ..)| word)
+    T::CHOICES
+        .iter()
+        .find(|(_, known, _)| known.is_same_choice(value))
+        .map_or("?", |&(word, ..)| word)
 }
 
 #[cfg(test)]

@@ -1,13 +1,15 @@
 //! Values of scene files and camera paths: read and written by serde, bounded as the options are.
 //!
-//! Each function reads one value that may be left out. Its error carries no place; the TOML reader adds the line.
+//! Each function reads one value that may be left out. Its error carries no place; the TOML reader
+//! adds the line.
 
 use crate::options::values::{self, check};
 use glam::Vec3;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Functions for `deserialize_with`, each with the type that it reads and the check that the value must pass.
+/// Functions for `deserialize_with`, each with the type that it reads and the check that the value
+/// must pass.
 macro_rules! checked {
     ($($name:ident: $type:ty, $check:expr;)*) => {
         $(pub(crate) fn $name<'de, D: Deserializer<'de>>(from: D) -> Result<Option<$type>, D::Error> {
@@ -128,7 +130,9 @@ pub(crate) fn suns<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Sun>, D::Er
     suns.into_iter().map(Sun::check).collect::<Result<_, _>>().map_err(D::Error::custom)
 }
 
-pub(crate) fn point_lights<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<PointLight>, D::Error> {
+pub(crate) fn point_lights<'de, D: Deserializer<'de>>(
+    from: D,
+) -> Result<Vec<PointLight>, D::Error> {
     let lights = Vec::<PointLight>::deserialize(from)?;
     lights.into_iter().map(PointLight::check).collect::<Result<_, _>>().map_err(D::Error::custom)
 }

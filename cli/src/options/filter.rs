@@ -2,7 +2,9 @@
 
 use crate::options::choices::{self, ON_OFF, Words, one_of};
 use crate::options::values;
-use basrelief::{Derivatives, Ewa, Filter, Formulas, Horizon, Rays, Trilinear, Visibility, Visible};
+use basrelief::{
+    Derivatives, Ewa, Filter, Formulas, Horizon, Rays, Trilinear, Visibility, Visible,
+};
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
@@ -29,34 +31,37 @@ pub(crate) struct FilterOptions {
     #[arg(long, value_name = "AS", value_parser = one_of(choices::FORMULAS))]
     #[serde(with = "choices")]
     formulas: Option<Formulas>,
-    /// Choose the mip level so that an ellipse holds at most N texels; 0: always the full texture, as in the paper
-    /// [default: 256]
+    /// Choose the mip level so that an ellipse holds at most N texels; 0: always the full texture,
+    /// as in the paper [default: 256]
     #[arg(long, value_name = "N")]
     texel_budget: Option<u32>,
-    /// For --filter ewa: where the Gaussian is cut, in pixels, 1 to 1.5; 1 is the paper's ellipse [default: 1]
+    /// For --filter ewa: where the Gaussian is cut, in pixels, 1 to 1.5; 1 is the paper's ellipse
+    /// [default: 1]
     #[arg(long, value_name = "R", value_parser = values::number, allow_hyphen_values = true)]
     cut: Option<f32>,
-    /// For --filter ewa: added to A and C of formula (1) for the texels' own kernel, 0.25 to 1; 2/3 is bilinear
-    /// interpolation, 1 Heckbert's [default: 0.6666667]
+    /// For --filter ewa: added to A and C of formula (1) for the texels' own kernel, 0.25 to 1; 2/3
+    /// is bilinear interpolation, 1 Heckbert's [default: 0.6666667]
     #[arg(long, value_name = "S", value_parser = values::number, allow_hyphen_values = true)]
     texel_kernel: Option<f32>,
-    /// Whether --filter ewa takes every texel of an ellipse, and not only those next to its longer axis, which is several
-    /// times as fast; --cut and --texel-kernel are for every texel [default: off]
+    /// Whether --filter ewa takes every texel of an ellipse, and not only those next to its longer
+    /// axis, which is several times as fast; --cut and --texel-kernel are for every texel [default:
+    /// off]
     #[arg(long, value_name = "on|off", hide_possible_values = true, value_parser = one_of(ON_OFF))]
     every_texel: Option<bool>,
     /// Longest ellipse, as the ratio of its axes, 1 to 1e6; longer ones are widened [default: 64]
     #[arg(long, value_name = "N", value_parser = values::number, allow_hyphen_values = true)]
     max_anisotropy: Option<f32>,
-    /// For --filter visible: a derivative of formula (3) this many times as long as that of (2) is a jump of the relief,
-    /// and (2) is taken; 1 to 1000000, or 0 for never, as in the paper [default: 4]
+    /// For --filter visible: a derivative of formula (3) this many times as long as that of (2) is
+    /// a jump of the relief, and (2) is taken; 1 to 1000000, or 0 for never, as in the paper
+    /// [default: 4]
     #[arg(long, value_name = "N", value_parser = values::number, allow_hyphen_values = true)]
     max_stretch: Option<f32>,
     /// Rays a pixel of --filter truth and parallax, 1 to 65536 [default: 64]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
-    /// For --filter horizon: most texels across the shorter axis of a pixel's footprint, 2 to 64: picks
-    /// the mip level, and how finely lines and bins cut the footprint; more is finer and slower
-    /// [default: 10]
+    /// For --filter horizon: most texels across the shorter axis of a pixel's footprint, 2 to 64:
+    /// picks the mip level, and how finely lines and bins cut the footprint; more is finer and
+    /// slower [default: 10]
     #[arg(long, value_name = "N")]
     lines: Option<u32>,
     /// Whether --filter horizon keeps tables for distant surfaces [default: on]
@@ -173,9 +178,16 @@ mod tests {
 
     #[test]
     fn what_is_inspected_is_ewa_or_the_paper() {
-        let options =
-            FilterOptions { derivatives: Some(Derivatives::Flat), max_stretch: Some(0.0), ..FilterOptions::default() };
-        let paper = Filter::Visible(Visible { derivatives: Derivatives::Flat, max_stretch: 0.0, ..Visible::default() });
+        let options = FilterOptions {
+            derivatives: Some(Derivatives::Flat),
+            max_stretch: Some(0.0),
+            ..FilterOptions::default()
+        };
+        let paper = Filter::Visible(Visible {
+            derivatives: Derivatives::Flat,
+            max_stretch: 0.0,
+            ..Visible::default()
+        });
         for filter in Filter::ALL.map(|filter| options.apply(filter)) {
             let is_ewa = matches!(filter, Filter::Ewa(_));
             assert_eq!(options.inspected(filter), if is_ewa { filter } else { paper });

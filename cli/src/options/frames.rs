@@ -12,15 +12,16 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 #[command(next_help_heading = "Many frames")]
 pub(crate) struct FramesOptions {
-    /// Draw N frames of a camera that goes once around its target; frame 1 is the picture without this option
+    /// Draw N frames of a camera that goes once around its target; frame 1 is the picture without
+    /// this option
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), conflicts_with = "camera_path")]
     turntable: Option<u32>,
-    /// Draw the frames of a camera that moves smoothly along the [[key]] entries of a TOML file: frame, and any of eye,
-    /// target, up and fov
+    /// Draw the frames of a camera that moves smoothly along the [[key]] entries of a TOML file:
+    /// frame, and any of eye, target, up and fov
     #[arg(long, value_name = "FILE")]
     camera_path: Option<PathBuf>,
-    /// Draw only these frames of them: 7, 1-100, 1-100x3 (every third), or several with commas; those that do not exist are
-    /// left out
+    /// Draw only these frames of them: 7, 1-100, 1-100x3 (every third), or several with commas;
+    /// those that do not exist are left out
     #[arg(long, value_name = "LIST", value_parser = FrameList::parse)]
     frames: Option<FrameList>,
     /// Leave out pictures whose file is there
@@ -52,9 +53,9 @@ impl FrameList {
     }
 
     fn has(&self, frame: u32) -> bool {
-        self.0
-            .iter()
-            .any(|&[first, last, step]| (first..=last).contains(&frame) && (frame - first).is_multiple_of(step))
+        self.0.iter().any(|&[first, last, step]| {
+            (first..=last).contains(&frame) && (frame - first).is_multiple_of(step)
+        })
     }
 }
 
@@ -85,7 +86,11 @@ impl FramesOptions {
         };
         let output = output.unwrap_or(Path::new("frame_####.png"));
         if !file_name(output).contains('#') {
-            return Err(format!("--output {}: many frames need #### for the frame's number", output.display()).into());
+            return Err(format!(
+                "--output {}: many frames need #### for the frame's number",
+                output.display()
+            )
+            .into());
         }
         let [first, last] = match &motion {
             Motion::Path(path) => path.range(),
@@ -100,7 +105,9 @@ impl FramesOptions {
             None => Shard::from_environment(self.shards, |name| std::env::var(name).ok())?,
         };
         let numbers = shard.map_or(asked.clone(), |(shard, _)| shard.pick(asked));
-        let remark = shard.map(|(shard, by)| format!("shard {shard} ({by}): {} of {num_asked} frames", numbers.len()));
+        let remark = shard.map(|(shard, by)| {
+            format!("shard {shard} ({by}): {} of {num_asked} frames", numbers.len())
+        });
         Ok(Sequence { motion, numbers, output: output.into(), remark })
     }
 
@@ -111,7 +118,9 @@ impl FramesOptions {
             ("--shards", self.shards.is_some()),
         ];
         if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
-            return Err(format!("{option}: needs many frames, from --turntable or --camera-path").into());
+            return Err(
+                format!("{option}: needs many frames, from --turntable or --camera-path").into()
+            );
         }
         let output = output.unwrap_or(Path::new("basrelief.png")).into();
         Ok(Sequence { motion: Motion::Still, numbers: vec![1], output, remark: None })
@@ -159,8 +168,9 @@ fn file_name(path: &Path) -> String {
 /// `name` with its last run of `#` replaced by the number, at least as wide.
 fn numbered(name: &str, number: u32) -> String {
     let Some(end) = name.rfind('#') else { return name.into() };
-    let start =
-        name[..end].rfind(|c| c != '#').map_or(0, |at| at + name[at..].chars().next().map_or(1, char::len_utf8));
+    let start = name[..end]
+        .rfind(|c| c != '#')
+        .map_or(0, |at| at + name[at..].chars().next().map_or(1, char::len_utf8));
     format!("{}{number:0width$}{}", &name[..start], &name[end + 1..], width = end + 1 - start)
 }
 
@@ -181,7 +191,8 @@ impl Cameras {
     }
 }
 
-/// The camera after `step` of `num` steps around its target, counterclockwise as seen from above (Rodrigues' formula).
+/// The camera after `step` of `num` steps around its target, counterclockwise as seen from above
+/// (Rodrigues' formula).
 fn turned(camera: &Camera, step: u32, num: u32) -> Camera {
     if step == 0 {
         return *camera;
@@ -224,13 +235,20 @@ mod tests {
 
     #[test]
     fn turntable_goes_once_around() {
-        let camera = Camera { eye: Vec3::new(1.0, 2.0, 5.0), target: Vec3::new(1.0, 1.0, 1.0), ..Camera::default() };
+        let camera = Camera {
+            eye: Vec3::new(1.0, 2.0, 5.0),
+            target: Vec3::new(1.0, 1.0, 1.0),
+            ..Camera::default()
+        };
         let cameras = Cameras::Turntable(camera, 4);
         assert_eq!(cameras.camera(1), camera);
         let expected = [[5.0, 2.0, 1.0], [1.0, 2.0, -3.0], [-3.0, 2.0, 1.0]].map(Vec3::from);
         for (number, eye) in (2..).zip(expected) {
             let found = cameras.camera(number);
-            assert!((found.eye - eye).length() < 1e-6 && found.target == camera.target, "{number}: {found:?}");
+            assert!(
+                (found.eye - eye).length() < 1e-6 && found.target == camera.target,
+                "{number}: {found:?}"
+            );
         }
     }
 }

@@ -1,4 +1,5 @@
-//! The command line: options of each subcommand, and the values, files and names that stand for them.
+//! The command line: options of each subcommand, and the values, files and names that stand for
+//! them.
 
 pub(crate) mod args;
 pub(crate) mod choices;

@@ -20,11 +20,13 @@ pub(crate) struct RenderOptions {
     #[command(flatten)]
     pub(crate) frames: FramesOptions,
 
-    /// Image to write: .png, .jpg, .tga, .tiff, .bmp (8-bit sRGB) or .exr (linear float); - writes PNG to stdout; of many
-    /// frames #### becomes the number [default: basrelief.png, frame_####.png of many frames]
+    /// Image to write: .png, .jpg, .tga, .tiff, .bmp (8-bit sRGB) or .exr (linear float); - writes
+    /// PNG to stdout; of many frames #### becomes the number [default: basrelief.png,
+    /// frame_####.png of many frames]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     pub(crate) output: Option<PathBuf>,
-    /// Write a scene file (TOML) that draws this picture again: the options, all settings and the camera
+    /// Write a scene file (TOML) that draws this picture again: the options, all settings and the
+    /// camera
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) save_scene: Option<PathBuf>,
     /// Draw N frames after one to warm up and report the middle time
@@ -49,7 +51,11 @@ pub(crate) const VIEWS: &[Choice<View>] = &[
     ("mip", View::Mip, "Mip level that the filter reads"),
     ("footprint", View::Footprint, "Texels of the full texture in the pixel's ellipse"),
     ("visible", View::Visible, "The part of these texels that the relief does not hide"),
-    ("horizon", View::Horizon, "The part of the rows along the view that the floating horizon sees"),
+    (
+        "horizon",
+        View::Horizon,
+        "The part of the rows along the view that the floating horizon sees",
+    ),
     ("depth", View::Depth, "Distance to the relief along the view"),
     ("normal", View::Normal, "Normal of the relief in world space"),
     ("uv", View::Uv, "Texture coordinates of the hit"),

@@ -7,7 +7,9 @@ use crate::options::file_values::{self, PointLight, Spelt, Sun};
 use crate::options::values;
 use crate::progress::Progress;
 use crate::refusal::Refusal;
-use basrelief::load::{self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY};
+use basrelief::load::{
+    self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY,
+};
 use basrelief::texture::Wrap;
 use basrelief::{Camera, Light, Scene, Settings, scene};
 use clap::Args;
@@ -18,11 +20,12 @@ use std::path::PathBuf;
 
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct SceneOptions {
-    /// What to draw: an OBJ file with its MTL files and images, or a scene file (TOML, see --save-scene), which other
-    /// options override; without one, a built-in scene
+    /// What to draw: an OBJ file with its MTL files and images, or a scene file (TOML, see
+    /// --save-scene), which other options override; without one, a built-in scene
     #[arg(value_name = "SCENE")]
     pub(crate) model: Option<PathBuf>,
-    /// Where SCENE has no normals: faces that meet at more than this angle, 0 to 180 degrees, show an edge [default: 60]
+    /// Where SCENE has no normals: faces that meet at more than this angle, 0 to 180 degrees, show
+    /// an edge [default: 60]
     #[arg(long, value_name = "DEG", value_parser = values::crease_angle, allow_hyphen_values = true, requires = "model")]
     pub(crate) crease_angle: Option<f32>,
     #[command(flatten)]
@@ -67,7 +70,8 @@ pub(crate) struct MapOptions {
     #[arg(long, value_name = "HOW", value_parser = one_of(choices::WRAPS), requires = "model")]
     #[serde(with = "choices")]
     wrap: Option<Wrap>,
-    /// Diffuse colour, linear, which multiplies the colour image [default: Kd of the MTL file, else 1]
+    /// Diffuse colour, linear, which multiplies the colour image [default: Kd of the MTL file, else
+    /// 1]
     #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::intensity")]
     diffuse: Option<Vec3>,
@@ -92,7 +96,8 @@ pub(crate) struct LimitOptions {
     /// Most pixels of an image's side, 1 to 32768 [default: 32768]
     #[arg(long, value_name = "N", requires = "model", value_parser = clap::value_parser!(u32).range(1..=32768))]
     max_image_side: Option<u32>,
-    /// Most memory of all images together in MiB while they are read, about 60 bytes a texel [default: 1024]
+    /// Most memory of all images together in MiB while they are read, about 60 bytes a texel
+    /// [default: 1024]
     #[arg(long, value_name = "N", requires = "model", value_parser = clap::value_parser!(u32).range(1..))]
     max_image_mib: Option<u32>,
     /// Most triangles, and most v, vt and vn lines each [default: 50000000]
@@ -137,12 +142,12 @@ pub(crate) struct LightOptions {
     #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true)]
     #[serde(deserialize_with = "file_values::intensity")]
     ambient: Option<Vec3>,
-    /// Colour where nothing is hit, sRGB: transparent, #rrggbb, R,G,B of 0 to 255 or a name such as skyblue
-    /// [default: the scene's own, transparent for an OBJ file]
+    /// Colour where nothing is hit, sRGB: transparent, #rrggbb, R,G,B of 0 to 255 or a name such as
+    /// skyblue [default: the scene's own, transparent for an OBJ file]
     #[arg(long, value_name = "COLOUR", value_parser = Spelt::<[f32; 4]>::parse, allow_hyphen_values = true)]
     background: Option<Spelt<[f32; 4]>>,
-    /// Light from far away: the direction towards it, and its linear colour, 1,1,1 if not given; may be repeated; takes
-    /// the place of the scene's own lights
+    /// Light from far away: the direction towards it, and its linear colour, 1,1,1 if not given;
+    /// may be repeated; takes the place of the scene's own lights
     #[arg(long, value_name = "X,Y,Z[,R,G,B]", value_parser = Sun::parse, allow_hyphen_values = true)]
     #[serde(deserialize_with = "file_values::suns", skip_serializing_if = "Vec::is_empty")]
     sun: Vec<Sun>,
@@ -160,11 +165,18 @@ impl SceneOptions {
     }
 
     /// Reads or makes the scene and sets what the options say.
-    pub(crate) fn load(&self, settings: &Settings, is_lit: bool, progress: &Progress) -> Result<Loaded, Refusal> {
+    pub(crate) fn load(
+        &self,
+        settings: &Settings,
+        is_lit: bool,
+        progress: &Progress,
+    ) -> Result<Loaded, Refusal> {
         let report = |stage: LoadStage| progress.stage(stage.to_string());
         let mut loaded = match &self.model {
             Some(obj) => load::load_reporting(obj, &self.load_options(settings, is_lit), &report)?,
-            None if self.has_maps() => return Err("materials are given, but no model (OBJ file) that has them".into()),
+            None if self.has_maps() => {
+                return Err("materials are given, but no model (OBJ file) that has them".into());
+            }
             None => built_in(),
         };
         self.set(&mut loaded.scene);
@@ -193,7 +205,11 @@ impl SceneOptions {
         let default = LoadOptions::default();
         LoadOptions {
             all: maps.material(),
-            materials: self.material.iter().map(|(name, maps)| (name.clone(), maps.material())).collect(),
+            materials: self
+                .material
+                .iter()
+                .map(|(name, maps)| (name.clone(), maps.material()))
+                .collect(),
             keep_normals: is_lit,
             aspect: settings.width as f32 / settings.height as f32,
             crease_angle: self.crease_angle.unwrap_or(default.crease_angle),
@@ -233,7 +249,13 @@ impl From<&Camera> for CameraOptions {
     /// Options that give all of `camera`.
     fn from(camera: &Camera) -> Self {
         let Camera { eye, target, up, fov_degrees, near } = *camera;
-        Self { eye: Some(eye), target: Some(target), up: Some(up), fov: Some(fov_degrees), near: Some(near) }
+        Self {
+            eye: Some(eye),
+            target: Some(target),
+            up: Some(up),
+            fov: Some(fov_degrees),
+            near: Some(near),
+        }
     }
 }
 
@@ -244,7 +266,8 @@ impl CameraOptions {
         camera.up = self.up.unwrap_or(camera.up);
         camera.fov_degrees = self.fov.unwrap_or(camera.fov_degrees);
         camera.near = self.near.unwrap_or(camera.near);
-        let is_vertical = (camera.target - camera.eye).normalize_or_zero().cross(camera.up).length() < 1e-4;
+        let is_vertical =
+            (camera.target - camera.eye).normalize_or_zero().cross(camera.up).length() < 1e-4;
         if is_vertical && self.up.is_none() {
             // Seen from straight above or below: what lies at the back is drawn at the top.
             camera.up = Vec3::NEG_Z;
@@ -255,8 +278,12 @@ impl CameraOptions {
 impl LightOptions {
     /// Lights that are given take the place of the scene's own.
     fn set(&self, scene: &mut Scene) {
-        let suns = self.sun.iter().map(|sun| Light::Directional { to_light: sun.direction, intensity: sun.color });
-        let point = |light: &PointLight| Light::Point { position: light.position, intensity: light.color };
+        let suns = self
+            .sun
+            .iter()
+            .map(|sun| Light::Directional { to_light: sun.direction, intensity: sun.color });
+        let point =
+            |light: &PointLight| Light::Point { position: light.position, intensity: light.color };
         let points = self.point_light.iter().map(point);
         let given: Vec<Light> = suns.chain(points).collect();
         if !given.is_empty() {
@@ -288,7 +315,10 @@ mod tests {
         let mut camera = Camera::framing(Vec3::ZERO, Vec3::ONE, 1.0);
         let framing = camera;
         parse("--eye -1,2,-3 --fov 30").unwrap().camera.place(&mut camera);
-        assert_eq!(camera, Camera { eye: Vec3::new(-1.0, 2.0, -3.0), fov_degrees: 30.0, ..framing });
+        assert_eq!(
+            camera,
+            Camera { eye: Vec3::new(-1.0, 2.0, -3.0), fov_degrees: 30.0, ..framing }
+        );
     }
 
     #[test]
@@ -304,7 +334,8 @@ mod tests {
         let mut scene = Scene { lights: vec![own], ambient: Vec3::ONE, ..Scene::default() };
         parse("").unwrap().light.set(&mut scene);
         assert!(scene.lights == [own] && scene.ambient == Vec3::ONE);
-        let options = parse("--sun -1,2,3 --point-light 1,2,3,4,5,6 --sun 1,0,0 --ambient 0").unwrap();
+        let options =
+            parse("--sun -1,2,3 --point-light 1,2,3,4,5,6 --sun 1,0,0 --ambient 0").unwrap();
         assert!(options.has_lights());
         options.light.set(&mut scene);
         assert!(scene.lights.len() == 3 && scene.ambient == Vec3::ZERO);
@@ -329,6 +360,9 @@ mod tests {
             assert!(parse(line).err().unwrap().to_string().contains("SCENE"), "{line}");
             assert!(parse(&format!("a.obj {line}")).is_ok(), "{line}");
         }
-        assert!(parse("a.obj --relief-depth 1.5").is_err() && parse("a.obj --relief-depth nan").is_err());
+        assert!(
+            parse("a.obj --relief-depth 1.5").is_err()
+                && parse("a.obj --relief-depth nan").is_err()
+        );
     }
 }

@@ -20,8 +20,8 @@
 //! [limits]                        # --allow-outside, --max-image-side and their like
 //! ```
 //!
-//! Keys are the names of options, tables are the headings of the help. Files are named relative to the scene file. An option
-//! on the command line overrides the key.
+//! Keys are the names of options, tables are the headings of the help. Files are named relative to
+//! the scene file. An option on the command line overrides the key.
 
 use crate::options::file_values;
 use crate::options::filter::FilterOptions;
@@ -51,8 +51,13 @@ struct SceneFile {
 }
 
 /// Puts what the scene file says, if `scene` names one, under what the options say.
-pub(crate) fn read_into(scene: &mut SceneOptions, settings: &mut SettingsOptions) -> Result<(), Refusal> {
-    let is_scene_file = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+pub(crate) fn read_into(
+    scene: &mut SceneOptions,
+    settings: &mut SettingsOptions,
+) -> Result<(), Refusal> {
+    let is_scene_file = |path: &Path| {
+        path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+    };
     let Some(path) = scene.model.take_if(|path| is_scene_file(path)) else { return Ok(()) };
     let over = SceneFile::of(scene, settings).table()?;
     let mut table = SceneFile::read(&path)?.table()?;
@@ -62,8 +67,14 @@ pub(crate) fn read_into(scene: &mut SceneOptions, settings: &mut SettingsOptions
     Ok(())
 }
 
-/// A scene file that draws the same picture again: what the options say, and all of the camera and settings.
-pub(crate) fn text(scene: &SceneOptions, settings: &Settings, camera: &Camera, path: &Path) -> Result<String, Refusal> {
+/// A scene file that draws the same picture again: what the options say, and all of the camera and
+/// settings.
+pub(crate) fn text(
+    scene: &SceneOptions,
+    settings: &Settings,
+    camera: &Camera,
+    path: &Path,
+) -> Result<String, Refusal> {
     let mut file = SceneFile::of(scene, &settings.into());
     file.camera = camera.into();
     let folder = folder_of(path);
@@ -111,13 +122,24 @@ fn folder_of(path: &Path) -> &Path {
 
 impl SceneFile {
     fn of(scene: &SceneOptions, settings: &SettingsOptions) -> Self {
-        let SceneOptions { model, crease_angle, all_materials, material, limits, camera, light } = scene.clone();
+        let SceneOptions { model, crease_angle, all_materials, material, limits, camera, light } =
+            scene.clone();
         let SettingsOptions { frame, filter } = settings.clone();
         Self { model, crease_angle, all_materials, material, camera, light, frame, filter, limits }
     }
 
     fn options(self) -> (SceneOptions, SettingsOptions) {
-        let Self { model, crease_angle, all_materials, material, camera, light, frame, filter, limits } = self;
+        let Self {
+            model,
+            crease_angle,
+            all_materials,
+            material,
+            camera,
+            light,
+            frame,
+            filter,
+            limits,
+        } = self;
         (
             SceneOptions { model, crease_angle, all_materials, material, limits, camera, light },
             SettingsOptions { frame, filter },
@@ -154,7 +176,9 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Refusal> {
         Ok(found) if !found.is_file() => Err(Refusal::file(path, "is not a file")),
         Ok(found) if found.len() > 1 << 24 => Err(Refusal::file(path, "is larger than 16 MiB")),
         Ok(_) => std::fs::read_to_string(path).map_err(|e| Refusal::file(path, e)),
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Err(Refusal::file(path, "no such file")),
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            Err(Refusal::file(path, "no such file"))
+        }
         Err(e) => Err(Refusal::file(path, e)),
     }
 }
@@ -162,7 +186,8 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Refusal> {
 /// Reads TOML; a refusal names the file, the line and the key.
 pub(crate) fn parse<T: for<'de> Deserialize<'de>>(path: &Path, text: &str) -> Result<T, Refusal> {
     toml::from_str(text).map_err(|error| {
-        let line = error.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
+        let line =
+            error.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
         let message = error.message().lines().collect::<Vec<_>>().join("; ");
         let spelt = line.and_then(|line| text.lines().nth(line - 1)?.split_once('='));
         match spelt.map(|(key, _)| key.trim()).filter(|key| !message.contains(*key)) {
@@ -183,8 +208,10 @@ fn at(path: &Path, line: Option<usize>, reason: &str) -> Refusal {
 /// The line that gives a key of `[frame]` or `[filter]`.
 fn line_of_key(text: &str, key: &str) -> Option<usize> {
     let document = toml::de::DeTable::parse(text).ok()?;
-    let tables =
-        ["frame", "filter"].into_iter().filter_map(|table| document.get_ref().get(table)?.get_ref().as_table());
-    let span = tables.filter_map(|table| table.get_key_value(key)).map(|(key, _)| key.span()).next()?;
+    let tables = ["frame", "filter"]
+        .into_iter()
+        .filter_map(|table| document.get_ref().get(table)?.get_ref().as_table());
+    let span =
+        tables.filter_map(|table| table.get_key_value(key)).map(|(key, _)| key.span()).next()?;
     Some(text[..span.start].matches('\n').count() + 1)
 }

@@ -25,7 +25,8 @@ pub(crate) struct FrameOptions {
     /// Width and height of the picture in pixels, each 1 to 32768 [default: 1280x720]
     #[arg(short, long, value_name = "WxH", value_parser = Spelt::<[u32; 2]>::parse, allow_hyphen_values = true)]
     size: Option<Spelt<[u32; 2]>>,
-    /// Draw only this part of the picture, in pixels from its upper left corner; `basrelief join` puts parts together
+    /// Draw only this part of the picture, in pixels from its upper left corner; `basrelief join`
+    /// puts parts together
     #[arg(long, value_name = "X,Y,W,H", value_parser = Spelt::<Region>::parse, allow_hyphen_values = true)]
     region: Option<Spelt<Region>>,
     /// Samples a pixel for edges: 1, 4 or 8; surfaces are still shaded once a pixel [default: 4]
@@ -35,7 +36,8 @@ pub(crate) struct FrameOptions {
     #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on",
           hide_possible_values = true, value_parser = one_of(ON_OFF))]
     cull: Option<bool>,
-    /// Side of the squares that threads draw, in pixels: 8, 16, 32, 64, 128 or 256; the picture stays the same [default: 32]
+    /// Side of the squares that threads draw, in pixels: 8, 16, 32, 64, 128 or 256; the picture
+    /// stays the same [default: 32]
     #[arg(long, value_name = "N")]
     tile: Option<u32>,
     /// Whether lights are evaluated [default: unlit, or lit where a light is given]
@@ -63,7 +65,8 @@ impl SettingsOptions {
         let Region { x, y, .. } = settings.drawn();
         let is_within = settings.drawn().is_within(settings.width, settings.height);
         let pixel = Region { x, y, width: 1, height: 1 };
-        Settings { region: if is_within { Some(pixel) } else { settings.region }, ..settings }.validate()?;
+        Settings { region: if is_within { Some(pixel) } else { settings.region }, ..settings }
+            .validate()?;
         Filter::ALL.iter().try_for_each(|filter| self.filter.apply(*filter).validate())
     }
 
@@ -71,14 +74,19 @@ impl SettingsOptions {
     fn unchecked(&self, has_lights: bool) -> Settings {
         let Self { frame, filter } = self;
         let default = Settings::default();
-        let [width, height] = frame.size.as_ref().map_or([default.width, default.height], |size| size.value);
+        let [width, height] =
+            frame.size.as_ref().map_or([default.width, default.height], |size| size.value);
         Settings {
             width,
             height,
             region: frame.region.as_ref().map(|region| region.value),
             filter: filter.chosen(),
             parallax: filter.parallax.unwrap_or(default.parallax),
-            lighting: frame.lighting.unwrap_or(if has_lights { Lighting::Lit } else { Lighting::Unlit }),
+            lighting: frame.lighting.unwrap_or(if has_lights {
+                Lighting::Lit
+            } else {
+                Lighting::Unlit
+            }),
             cull_back_faces: frame.cull.unwrap_or(default.cull_back_faces),
             msaa: frame.msaa.unwrap_or(default.msaa),
             tile_size: frame.tile.unwrap_or(default.tile_size),
@@ -138,7 +146,8 @@ mod tests {
         for arg in command.get_arguments() {
             let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
             // What is not one word is a rule.
-            let default = help.rsplit_once("[default: ").and_then(|(_, rest)| rest.strip_suffix(']'));
+            let default =
+                help.rsplit_once("[default: ").and_then(|(_, rest)| rest.strip_suffix(']'));
             if let Some(default) = default.filter(|default| !default.contains(' ')) {
                 line.push(format!("--{}={default}", arg.get_long().unwrap()));
             }
@@ -160,15 +169,20 @@ mod tests {
         let others = options(OF_FILTERS).unwrap().filter;
         for filter in Filter::ALL.into_iter().flat_map(|filter| [filter, others.apply(filter)]) {
             let region = Some(Region { x: 1, y: 2, width: 3, height: 4 });
-            let settings = Settings { width: 64, region, filter, cull_back_faces: true, ..Settings::default() };
+            let settings = Settings {
+                width: 64,
+                region,
+                filter,
+                cull_back_faces: true,
+                ..Settings::default()
+            };
             assert_eq!(SettingsOptions::from(&settings).settings(true).unwrap(), settings);
         }
     }
 
     #[test]
     fn each_option_sets_its_field() {
-        let line =
-            "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --lighting lit --parallax off --filter ewa";
+        let line = "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --lighting lit --parallax off --filter ewa";
         let options = options(&format!("{line} {OF_FILTERS}")).unwrap();
         let (derivatives, formulas) = (Derivatives::Flat, Formulas::Printed);
         let (texel_budget, max_anisotropy) = (0, 8.0);
@@ -182,14 +196,26 @@ mod tests {
             texel_kernel: 0.5,
         };
         let visibility = Visibility::TwoEnded;
-        let visible = Visible { visibility, derivatives, formulas, texel_budget, max_anisotropy, max_stretch: 3.0 };
+        let visible = Visible {
+            visibility,
+            derivatives,
+            formulas,
+            texel_budget,
+            max_anisotropy,
+            max_stretch: 3.0,
+        };
         let expected = [
             Filter::Nearest,
             Filter::Bilinear,
             Filter::Trilinear(Trilinear { derivatives, formulas }),
             Filter::Ewa(ewa),
             Filter::Visible(visible),
-            Filter::Horizon(Horizon { lines: 6, far_field: false, far_field_mib: 7, max_anisotropy }),
+            Filter::Horizon(Horizon {
+                lines: 6,
+                far_field: false,
+                far_field_mib: 7,
+                max_anisotropy,
+            }),
             Filter::Parallax(Rays { samples: 5 }),
             Filter::Truth(Rays { samples: 5 }),
         ];

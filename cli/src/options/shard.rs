@@ -1,4 +1,5 @@
-//! Which of many frames this process draws: every n-th of them, by options or by what a cluster says of the task.
+//! Which of many frames this process draws: every n-th of them, by options or by what a cluster
+//! says of the task.
 
 use crate::options::values::digits;
 use crate::refusal::Refusal;
@@ -16,18 +17,22 @@ impl Shard {
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let sides = text.split_once('/').map(|(i, n)| (digits(i), digits(n)));
         match sides {
-            Some((Some(i), Some(count))) if (1..=count).contains(&i) => Ok(Self { index: i - 1, count }),
+            Some((Some(i), Some(count))) if (1..=count).contains(&i) => {
+                Ok(Self { index: i - 1, count })
+            }
             _ => Err("is not I/N with I from 1 to N, such as 2/4".into()),
         }
     }
 
-    /// What the environment says, read by `get`: that of a Kubernetes Indexed Job where `shards` gives its completions,
-    /// else that of a Slurm array; with the cluster's name.
+    /// What the environment says, read by `get`: that of a Kubernetes Indexed Job where `shards`
+    /// gives its completions, else that of a Slurm array; with the cluster's name.
     pub(crate) fn from_environment(
         shards: Option<u32>,
         get: impl Fn(&str) -> Option<String>,
     ) -> Result<Option<(Self, &'static str)>, Refusal> {
-        let number = |name: &str| get(name).map(|text| digits(&text).ok_or(format!("{name}={text} is not a number")));
+        let number = |name: &str| {
+            get(name).map(|text| digits(&text).ok_or(format!("{name}={text} is not a number")))
+        };
         let pod = number("JOB_COMPLETION_INDEX").transpose()?;
         match (pod, shards) {
             (Some(index), Some(count)) if index < count => return Ok(Some((Self { index, count }, "Kubernetes Job"))),
@@ -43,8 +48,8 @@ impl Shard {
             (None, None) => Ok(()),
         }?;
         let Some(id) = number("SLURM_ARRAY_TASK_ID").transpose()? else { return Ok(None) };
-        let [min, max, count, step] =
-            ["MIN", "MAX", "COUNT", "STEP"].map(|name| number(&format!("SLURM_ARRAY_TASK_{name}")).transpose());
+        let [min, max, count, step] = ["MIN", "MAX", "COUNT", "STEP"]
+            .map(|name| number(&format!("SLURM_ARRAY_TASK_{name}")).transpose());
         let (min, max, step) = (min?.unwrap_or(id), max?, step?.unwrap_or(1).max(1));
         let Some(count) = count? else {
             return Err(
@@ -90,24 +95,35 @@ mod tests {
 
     fn slurm(numbers: [u32; 5]) -> String {
         let names = ["ID", "MIN", "MAX", "COUNT", "STEP"];
-        names.iter().zip(numbers).map(|(name, number)| format!("SLURM_ARRAY_TASK_{name}={number} ")).collect()
+        names
+            .iter()
+            .zip(numbers)
+            .map(|(name, number)| format!("SLURM_ARRAY_TASK_{name}={number} "))
+            .collect()
     }
 
     #[test]
     fn shards_are_all_of_it_once() {
         for count in 1..=7 {
             let shard = |i| Shard::parse(&format!("{i}/{count}")).unwrap();
-            let mut all: Vec<u32> = (1..=count).flat_map(|i| shard(i).pick((0..20).collect())).collect();
+            let mut all: Vec<u32> =
+                (1..=count).flat_map(|i| shard(i).pick((0..20).collect())).collect();
             all.sort_unstable();
             assert_eq!(all, (0..20).collect::<Vec<_>>());
         }
-        assert!(["0/4", "5/4", "1", "/4", "1/", "-1/4", "1/0", "a/b"].iter().all(|bad| Shard::parse(bad).is_err()));
+        assert!(
+            ["0/4", "5/4", "1", "/4", "1/", "-1/4", "1/0", "a/b"]
+                .iter()
+                .all(|bad| Shard::parse(bad).is_err())
+        );
     }
 
     #[test]
     fn clusters_say_which_shard_this_is() {
         assert_eq!(environment(None, ""), Ok(None));
-        for (numbers, shard) in [([0, 0, 3, 4, 1], "1/4"), ([8, 5, 8, 4, 1], "4/4"), ([20, 0, 30, 4, 10], "3/4")] {
+        for (numbers, shard) in
+            [([0, 0, 3, 4, 1], "1/4"), ([8, 5, 8, 4, 1], "4/4"), ([20, 0, 30, 4, 10], "3/4")]
+        {
             assert_eq!(environment(None, &slurm(numbers)), Ok(Some(shard.into())));
         }
         assert_eq!(environment(Some(5), "JOB_COMPLETION_INDEX=2"), Ok(Some("3/5".into())));
@@ -129,7 +145,10 @@ mod tests {
             (None, gaps.as_str()),
         ] {
             let refusal = environment(shards, variables).unwrap_err().to_string();
-            assert!(refusal.contains("--shard") || refusal.contains("is not a number"), "{refusal}");
+            assert!(
+                refusal.contains("--shard") || refusal.contains("is not a number"),
+                "{refusal}"
+            );
         }
     }
 }

@@ -5,7 +5,10 @@ use crate::refusal::Refusal;
 /// A pool of `num` threads, or of as many as this process may use.
 pub(crate) fn thread_pool(num: u32) -> Result<rayon::ThreadPool, Refusal> {
     let num = num_threads(num);
-    rayon::ThreadPoolBuilder::new().num_threads(num).build().map_err(|e| format!("--threads {num}: {e}").into())
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(num)
+        .build()
+        .map_err(|e| format!("--threads {num}: {e}").into())
 }
 
 /// How many threads `num` stands for.

@@ -1,5 +1,5 @@
-//! Options that are numbers, vectors, colours or sizes. Each parser says in a few words what it expected. Scene files hold
-//! the same values, bounded by the same checks: see `file_values`.
+//! Options that are numbers, vectors, colours or sizes. Each parser says in a few words what it
+//! expected. Scene files hold the same values, bounded by the same checks: see `file_values`.
 
 use basrelief::Region;
 use basrelief::texture::linear_from_srgb8;
@@ -132,15 +132,27 @@ pub(crate) mod check {
 
     pub(crate) fn number(value: f32) -> Result<f32, String> {
         // Squares of larger numbers leave the range of f32.
-        if value.abs() <= 1e18 { Ok(value) } else { Err(format!("{value} is not within -1e18 to 1e18")) }
+        if value.abs() <= 1e18 {
+            Ok(value)
+        } else {
+            Err(format!("{value} is not within -1e18 to 1e18"))
+        }
     }
 
     pub(crate) fn field_of_view(value: f32) -> Result<f32, String> {
-        if value > 0.0 && value < 180.0 { Ok(value) } else { Err("must be above 0 and below 180 degrees".into()) }
+        if value > 0.0 && value < 180.0 {
+            Ok(value)
+        } else {
+            Err("must be above 0 and below 180 degrees".into())
+        }
     }
 
     pub(crate) fn crease_angle(value: f32) -> Result<f32, String> {
-        if (0.0..=180.0).contains(&value) { Ok(value) } else { Err("must be within 0 to 180 degrees".into()) }
+        if (0.0..=180.0).contains(&value) {
+            Ok(value)
+        } else {
+            Err("must be within 0 to 180 degrees".into())
+        }
     }
 
     pub(crate) fn above_zero(value: f32) -> Result<f32, String> {
@@ -152,15 +164,27 @@ pub(crate) mod check {
     }
 
     pub(crate) fn exponent(value: f32) -> Result<f32, String> {
-        if (0.0..=1e4).contains(&value) { Ok(value) } else { Err("must be within 0 to 10000".into()) }
+        if (0.0..=1e4).contains(&value) {
+            Ok(value)
+        } else {
+            Err("must be within 0 to 10000".into())
+        }
     }
 
     pub(crate) fn vector(value: Vec3) -> Result<Vec3, String> {
-        value.to_array().into_iter().try_for_each(|component| number(component).map(drop)).map(|()| value)
+        value
+            .to_array()
+            .into_iter()
+            .try_for_each(|component| number(component).map(drop))
+            .map(|()| value)
     }
 
     pub(crate) fn direction(value: Vec3) -> Result<Vec3, String> {
-        if vector(value)?.length_squared() >= 1e-30 { Ok(value) } else { Err("must not be zero".into()) }
+        if vector(value)?.length_squared() >= 1e-30 {
+            Ok(value)
+        } else {
+            Err("must not be zero".into())
+        }
     }
 
     pub(crate) fn intensity(value: Vec3) -> Result<Vec3, String> {
@@ -195,14 +219,16 @@ const COLORS: &[(&str, [u8; 3])] = &[
     ("cyan", [0, 255, 255]),
 ];
 
-/// Linear RGB and opacity from a colour's name, `#rgb`, `#rrggbb`, `R,G,B` of 0 to 255, or `transparent`.
+/// Linear RGB and opacity from a colour's name, `#rgb`, `#rrggbb`, `R,G,B` of 0 to 255, or
+/// `transparent`.
 pub(crate) fn color(text: &str) -> Result<[f32; 4], String> {
     let lower = text.trim().to_ascii_lowercase();
     if lower == "transparent" {
         return Ok([0.0; 4]);
     }
     let named = COLORS.iter().find(|(name, _)| *name == lower).map(|&(_, rgb)| rgb);
-    let rgb = named.or_else(|| lower.strip_prefix('#').and_then(hexadecimal)).or_else(|| decimal(&lower));
+    let rgb =
+        named.or_else(|| lower.strip_prefix('#').and_then(hexadecimal)).or_else(|| decimal(&lower));
     let [r, g, b] = rgb
         .ok_or("is not a colour: use #rrggbb, R,G,B of 0 to 255, transparent, or a name such as white or skyblue")?
         .map(linear_from_srgb8);
@@ -210,7 +236,8 @@ pub(crate) fn color(text: &str) -> Result<[f32; 4], String> {
 }
 
 fn hexadecimal(text: &str) -> Option<[u8; 3]> {
-    let digits: Option<Vec<u8>> = text.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect();
+    let digits: Option<Vec<u8>> =
+        text.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect();
     match digits?[..] {
         [r, g, b] => Some([r, g, b].map(|digit| digit * 17)),
         [r, s, g, h, b, c] => Some([16 * r + s, 16 * g + h, 16 * b + c]),
@@ -230,11 +257,27 @@ mod tests {
     #[test]
     fn sizes() {
         assert_eq!(size("1280x720"), Ok([1280, 720]));
-        for bad in ["", "x", "12", "0x0", "0x5", "12x", "-1x5", "1x+5", "32769x1", "1x1x1", "99999999999x1"] {
+        for bad in [
+            "",
+            "x",
+            "12",
+            "0x0",
+            "0x5",
+            "12x",
+            "-1x5",
+            "1x+5",
+            "32769x1",
+            "1x1x1",
+            "99999999999x1",
+        ] {
             assert!(size(bad).is_err(), "{bad}");
         }
         assert_eq!(region("1, 2,3,4"), Ok(Region { x: 1, y: 2, width: 3, height: 4 }));
-        assert!(["", "1,2,3", "1,2,3,4,5", "-1,2,3,4", "1,2,3,+4", "1 2,3,4"].iter().all(|bad| region(bad).is_err()));
+        assert!(
+            ["", "1,2,3", "1,2,3,4,5", "-1,2,3,4", "1,2,3,+4", "1 2,3,4"]
+                .iter()
+                .all(|bad| region(bad).is_err())
+        );
     }
 
     #[test]
@@ -249,13 +292,18 @@ mod tests {
     #[test]
     fn numbers_are_finite() {
         assert_eq!(vector("-1, 2e3,.5"), Ok(Vec3::new(-1.0, 2000.0, 0.5)));
-        for bad in ["nan,0,0", "1,inf,0", "1e39,0,0", "1e30,0,0", "1,2", "1,2,3,4", "", "1,,2", "a,b,c"] {
+        for bad in
+            ["nan,0,0", "1,inf,0", "1e39,0,0", "1e30,0,0", "1,2", "1,2,3,4", "", "1,,2", "a,b,c"]
+        {
             assert!(vector(bad).is_err(), "{bad}");
         }
         assert_eq!(light("1,2,3"), Ok([Vec3::new(1.0, 2.0, 3.0), Vec3::ONE]));
         assert_eq!(light("1,2,3,4,5,6").map(|l| l[1]), Ok(Vec3::new(4.0, 5.0, 6.0)));
         assert!(["1,2,3,-1,0,0", "1,2,3,nan,0,0", "1,2,3,4"].iter().all(|bad| light(bad).is_err()));
-        assert!(["0,0,0", "0,0,0,1,1,1"].iter().all(|bad| sun(bad).is_err()) && direction("0,0,0").is_err());
+        assert!(
+            ["0,0,0", "0,0,0,1,1,1"].iter().all(|bad| sun(bad).is_err())
+                && direction("0,0,0").is_err()
+        );
         assert_eq!(intensity("0.5"), Ok(Vec3::splat(0.5)));
         assert!(["0", "180", "-5", "nan"].iter().all(|bad| field_of_view(bad).is_err()));
         assert!(["-1", "181", "nan"].iter().all(|bad| crease_angle(bad).is_err()));

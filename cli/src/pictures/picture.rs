@@ -9,7 +9,8 @@ use std::io::BufWriter;
 use std::path::Path;
 use std::time::Instant;
 
-/// Pixels of a picture from which on it is drawn in bands: 64 MiB as a frame, 256 MiB in linear light.
+/// Pixels of a picture from which on it is drawn in bands: 64 MiB as a frame, 256 MiB in linear
+/// light.
 const LARGE: u64 = 1 << 24;
 /// Pixels of a band: 16 MiB as a frame, and many tiles for every thread.
 const BAND: u32 = 1 << 22;
@@ -19,11 +20,15 @@ const MAX_WHOLE: u64 = 1 << 28;
 /// What drawing took, in milliseconds and in all.
 pub(crate) type Took = (f64, Stats);
 
-/// The settings that the renderer of a picture is made with: of one that is drawn in bands, those of the first.
+/// The settings that the renderer of a picture is made with: of one that is drawn in bands, those
+/// of the first.
 pub(crate) fn first_settings(settings: &Settings, way: Way) -> Settings {
     let Region { width, height, .. } = settings.drawn();
     let first = Region { height: band_height(width).min(height), ..settings.drawn() };
-    Settings { region: if way == Way::Bands { Some(first) } else { settings.region }, ..settings.clone() }
+    Settings {
+        region: if way == Way::Bands { Some(first) } else { settings.region },
+        ..settings.clone()
+    }
 }
 
 /// Rows of a band: whole tiles of the usual size, so that few pixels are drawn for two bands.
@@ -45,7 +50,11 @@ impl Way {
     ///
     /// # Errors
     /// Says so where the picture is too large for its format, or to be drawn more than once.
-    pub(crate) fn of(settings: &Settings, format: Format, is_repeated: bool) -> Result<Self, Refusal> {
+    pub(crate) fn of(
+        settings: &Settings,
+        format: Format,
+        is_repeated: bool,
+    ) -> Result<Self, Refusal> {
         let Region { width, height, .. } = settings.drawn();
         let num_pixels = u64::from(width) * u64::from(height);
         let in_bands = format == Format::Png && !is_repeated;
@@ -60,8 +69,8 @@ impl Way {
     }
 }
 
-/// Draws the picture of `settings`, with which the renderer was made, into the file `path`: once, or once to warm up and then
-/// as often as it is to be measured.
+/// Draws the picture of `settings`, with which the renderer was made, into the file `path`: once,
+/// or once to warm up and then as often as it is to be measured.
 pub(crate) fn draw(
     renderer: &mut Renderer,
     settings: &Settings,
@@ -112,9 +121,15 @@ fn part(settings: &Settings) -> Option<Part> {
     settings.region.map(|region| Part { region, whole: [settings.width, settings.height] })
 }
 
-fn draw_bands(renderer: &mut Renderer, settings: &Settings, path: &Path, progress: &Progress) -> Result<Took, Refusal> {
+fn draw_bands(
+    renderer: &mut Renderer,
+    settings: &Settings,
+    path: &Path,
+    progress: &Progress,
+) -> Result<Took, Refusal> {
     let drawn = settings.drawn();
-    // Over an opaque background every pixel is opaque; over another, what follows below is not known yet.
+    // Over an opaque background every pixel is opaque; over another, what follows below is not
+    // known yet.
     let has_opacity = renderer.scene().background[3] < 1.0;
     let (width, height, part) = (drawn.width, drawn.height, part(settings));
     let head = PngHead { width, height, has_opacity, part };
@@ -154,7 +169,10 @@ mod tests {
         assert!(way(4097, 4096, Format::Png, false) == Ok(Way::Bands));
         assert!(way(32768, 32768, Format::Png, false) == Ok(Way::Bands));
         assert!(way(8192, 8192, Format::Exr, false) == Ok(Way::Whole(Format::Exr)));
-        assert!(way(32768, 32768, Format::Exr, false).is_err_and(|refusal| refusal.to_string().contains("--size")));
+        assert!(
+            way(32768, 32768, Format::Exr, false)
+                .is_err_and(|refusal| refusal.to_string().contains("--size"))
+        );
         assert!(way(32768, 32768, Format::Png, true).is_err());
         let region = Some(Region { x: 9, y: 9, width: 90, height: 90 });
         let settings = Settings { width: 32768, height: 32768, region, ..Settings::default() };

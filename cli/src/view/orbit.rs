@@ -27,17 +27,27 @@ impl Orbit {
     pub(crate) fn new(camera: Camera) -> Self {
         let up = camera.up.normalize();
         let from_target = camera.eye - camera.target;
-        let level = (from_target - up * from_target.dot(up)).normalize_or(up.any_orthonormal_vector());
+        let level =
+            (from_target - up * from_target.dot(up)).normalize_or(up.any_orthonormal_vector());
         let distance = from_target.length();
-        let pitch = (from_target.dot(up) / distance).clamp(-1.0, 1.0).asin().clamp(-STEEPEST, STEEPEST);
-        Self { camera, axes: [up, level, up.cross(level)], first_distance: distance, distance, yaw: 0.0, pitch }
+        let pitch =
+            (from_target.dot(up) / distance).clamp(-1.0, 1.0).asin().clamp(-STEEPEST, STEEPEST);
+        Self {
+            camera,
+            axes: [up, level, up.cross(level)],
+            first_distance: distance,
+            distance,
+            yaw: 0.0,
+            pitch,
+        }
     }
 
     /// Where the eye is now.
     pub(crate) fn camera(&self) -> Camera {
         let [up, east, north] = self.axes;
         let level = east * self.yaw.cos() + north * self.yaw.sin();
-        let eye = self.camera.target + (level * self.pitch.cos() + up * self.pitch.sin()) * self.distance;
+        let eye =
+            self.camera.target + (level * self.pitch.cos() + up * self.pitch.sin()) * self.distance;
         // Close to a surface the near plane must come along.
         let near = self.camera.near * (self.distance / self.first_distance).min(1.0);
         Camera { eye, near, ..self.camera }
@@ -70,7 +80,11 @@ mod tests {
     use super::*;
 
     fn camera() -> Camera {
-        Camera { eye: Vec3::new(1.0, 2.0, 5.0), target: Vec3::new(0.5, 0.5, -1.0), ..Camera::default() }
+        Camera {
+            eye: Vec3::new(1.0, 2.0, 5.0),
+            target: Vec3::new(0.5, 0.5, -1.0),
+            ..Camera::default()
+        }
     }
 
     #[test]
@@ -102,6 +116,8 @@ mod tests {
         assert!((distance(&orbit) - before).abs() < 1e-3);
         let [.., forward] = orbit.camera().axes();
         orbit.zoom(3.0);
-        assert!(distance(&orbit) < before * 0.8 && orbit.camera().axes()[2].distance(forward) < 1e-4);
+        assert!(
+            distance(&orbit) < before * 0.8 && orbit.camera().axes()[2].distance(forward) < 1e-4
+        );
     }
 }

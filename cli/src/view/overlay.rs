@@ -58,7 +58,9 @@ pub(crate) fn lines(canvas: &mut Canvas, text: &str) {
     let letters = |line: &str| line.chars().collect::<Vec<_>>();
     let wrapped: Vec<String> = text
         .lines()
-        .flat_map(|line| letters(line).chunks(columns).map(|part| part.iter().collect()).collect::<Vec<String>>())
+        .flat_map(|line| {
+            letters(line).chunks(columns).map(|part| part.iter().collect()).collect::<Vec<String>>()
+        })
         .collect();
     let top = height - CELL[1] * wrapped.len() as f32 - 12.0;
     canvas.rect([0.0, top, width, height - top], SHADE);
@@ -69,7 +71,10 @@ pub(crate) fn lines(canvas: &mut Canvas, text: &str) {
 
 /// What a pixel sees, made to fit beside the picture.
 pub(crate) fn inspector(seen: &Inspection, [width, height]: [u32; 2]) -> Canvas {
-    draw_small(seen, [(width / 2).clamp(160, 620), height.saturating_sub(CELL[1] as u32 + 6).max(120)])
+    draw_small(
+        seen,
+        [(width / 2).clamp(160, 620), height.saturating_sub(CELL[1] as u32 + 6).max(120)],
+    )
 }
 
 /// Lays the inspector on the right side.

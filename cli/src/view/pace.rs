@@ -32,7 +32,9 @@ impl Pace {
         if self.full_ms == 0.0 {
             return 2;
         }
-        (1..COARSEST).find(|&scale| self.full_ms / f64::from(scale * scale) <= AIM).unwrap_or(COARSEST)
+        (1..COARSEST)
+            .find(|&scale| self.full_ms / f64::from(scale * scale) <= AIM)
+            .unwrap_or(COARSEST)
     }
 }
 

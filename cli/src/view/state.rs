@@ -124,7 +124,8 @@ impl Viewer {
     }
 
     pub(crate) fn resize(&mut self, [width, height]: [u32; 2]) {
-        (self.settings.width, self.settings.height) = (width.clamp(1, 32768), height.clamp(1, 32768));
+        (self.settings.width, self.settings.height) =
+            (width.clamp(1, 32768), height.clamp(1, 32768));
         self.pace.forget();
         self.change();
     }
@@ -140,7 +141,8 @@ impl Viewer {
             Act::Split => {
                 self.is_split = !self.is_split;
                 if self.filters[0] == self.filters[1] {
-                    let others = [Filter::default(), Filter::Ewa(Ewa::default())].map(|f| self.options.apply(f));
+                    let others = [Filter::default(), Filter::Ewa(Ewa::default())]
+                        .map(|f| self.options.apply(f));
                     let other = others.into_iter().find(|filter| *filter != self.filters[0]);
                     self.filters[1] = other.unwrap_or(self.filters[1]);
                 }
@@ -192,7 +194,8 @@ impl Viewer {
         }
     }
 
-    /// Loads a file that was dropped: a scene, or an image as a map of the scene shown. What the drawing thread must know.
+    /// Loads a file that was dropped: a scene, or an image as a map of the scene shown. What the
+    /// drawing thread must know.
     pub(crate) fn load(&mut self, dropped: &Path) -> Option<Wish> {
         let mut options = self.load_options.clone();
         let path = match kind_of(dropped) {
@@ -211,7 +214,9 @@ impl Viewer {
                 path
             }
         };
-        match load::load(&path, &options).and_then(|loaded| loaded.scene.validate().map(|()| loaded.scene)) {
+        match load::load(&path, &options)
+            .and_then(|loaded| loaded.scene.validate().map(|()| loaded.scene))
+        {
             Ok(scene) => {
                 if kind_of(dropped) == Kind::Scene {
                     self.orbit = Orbit::new(scene.camera);
@@ -252,8 +257,10 @@ impl Viewer {
             return vec![Settings { filter: self.filters[0], ..whole }];
         }
         let half = width / 2;
-        let halves = [(0, half), (half, width - half)].map(|(x, width)| Region { x, y: 0, width, height });
-        let settings = |(filter, region)| Settings { filter, region: Some(region), ..whole.clone() };
+        let halves =
+            [(0, half), (half, width - half)].map(|(x, width)| Region { x, y: 0, width, height });
+        let settings =
+            |(filter, region)| Settings { filter, region: Some(region), ..whole.clone() };
         self.filters.into_iter().zip(halves).map(settings).collect()
     }
 
@@ -310,7 +317,8 @@ enum Kind {
 }
 
 fn kind_of(path: &Path) -> Kind {
-    let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let name =
+        path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
     match () {
         () if name.ends_with(".obj") => Kind::Scene,
@@ -328,7 +336,13 @@ mod tests {
 
     fn viewer() -> Viewer {
         let settings = Settings { width: 320, height: 180, ..Settings::default() };
-        Viewer::new(scene::builtin(), settings, FilterOptions::default(), None, LoadOptions::default())
+        Viewer::new(
+            scene::builtin(),
+            settings,
+            FilterOptions::default(),
+            None,
+            LoadOptions::default(),
+        )
     }
 
     /// Pretends to draw what is due; how wide its pixels are and how many frames there are.
@@ -364,10 +378,16 @@ mod tests {
         viewer.act(Act::Filter { number: 3, is_right: false });
         assert_eq!(viewer.filters[0], FILTERS[3].1);
         viewer.act(Act::Filter { number: 0, is_right: true });
-        let Ok(Wish::Draw { settings, .. }) = viewer.next(Instant::now()) else { panic!("a frame is due") };
+        let Ok(Wish::Draw { settings, .. }) = viewer.next(Instant::now()) else {
+            panic!("a frame is due")
+        };
         assert_eq!([settings[0].filter, settings[1].filter], [FILTERS[3].1, FILTERS[0].1]);
         let [left, right] = [settings[0].drawn(), settings[1].drawn()];
-        assert_eq!((left.x, left.x + left.width, right.x + right.width), (0, right.x, settings[0].width), "halves");
+        assert_eq!(
+            (left.x, left.x + left.width, right.x + right.width),
+            (0, right.x, settings[0].width),
+            "halves"
+        );
         viewer.act(Act::Filter { number: 0, is_right: false });
         (0..2).for_each(|_| _ = viewer.act(Act::Split));
         assert_ne!(viewer.filters[0], viewer.filters[1], "two halves alike show nothing");
@@ -387,23 +407,39 @@ mod tests {
         assert_eq!(viewer.picture().bytes(), plain);
         assert!(!viewer.act(Act::Close));
         viewer.inspect([100, 5]);
-        assert!(viewer.message.as_deref().is_some_and(|m| m.contains("sees no surface")), "{:?}", viewer.message);
+        assert!(
+            viewer.message.as_deref().is_some_and(|m| m.contains("sees no surface")),
+            "{:?}",
+            viewer.message
+        );
     }
 
     #[test]
     fn dropped_files_load_or_say_why_not() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
-        std::fs::write(path("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n").unwrap();
+        std::fs::write(
+            path("a.obj"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n",
+        )
+        .unwrap();
         Frame::filled(8, 8, [0.5, 0.5, 0.5, 1.0]).save(path("a_height.png")).unwrap();
         let mut viewer = viewer();
         assert!(viewer.load(&path("a_height.png")).is_none());
         assert!(viewer.message.take().unwrap().contains("OBJ"));
         assert!(viewer.load(&path("none.obj")).is_none());
         assert!(viewer.message.take().unwrap().contains("none.obj"));
-        assert!(matches!(viewer.load(&path("a.obj")), Some(Wish::Scene(_))) && viewer.scene.meshes.len() == 1);
+        assert!(
+            matches!(viewer.load(&path("a.obj")), Some(Wish::Scene(_)))
+                && viewer.scene.meshes.len() == 1
+        );
         assert!(viewer.scene.materials[0].surface.is_none());
         assert!(viewer.load(&path("a_height.png")).is_some(), "{:?}", viewer.message);
-        assert!(viewer.scene.materials[0].surface.as_ref().is_some_and(|surface| surface.relief_depth() > 0.0));
+        assert!(
+            viewer.scene.materials[0]
+                .surface
+                .as_ref()
+                .is_some_and(|surface| surface.relief_depth() > 0.0)
+        );
     }
 }

@@ -23,15 +23,21 @@ const KEY_TURN: f32 = 0.08;
 const SPIN: f32 = 0.5;
 
 /// Shows the viewer until it is closed, or for the time of a spin, of which it gives a report.
-pub(crate) fn run(viewer: Viewer, num_threads: usize, spin: Option<Duration>) -> Result<Option<String>, Refusal> {
+pub(crate) fn run(
+    viewer: Viewer,
+    num_threads: usize,
+    spin: Option<Duration>,
+) -> Result<Option<String>, Refusal> {
     let events = EventLoop::<Answer>::with_user_event().build().map_err(|e| no_window(&e))?;
     let proxy = events.create_proxy();
     let answer = move |answer| {
         // The window may be gone before its last frame is drawn.
         let _ = proxy.send_event(answer);
     };
-    let worker = Worker::start(viewer.scene(), num_threads, answer).map_err(|e| format!("--threads: {e}"))?;
-    let context = Context::new(events.owned_display_handle()).map_err(|e| format!("no pixels can be shown: {e}"))?;
+    let worker = Worker::start(viewer.scene(), num_threads, answer)
+        .map_err(|e| format!("--threads: {e}"))?;
+    let context = Context::new(events.owned_display_handle())
+        .map_err(|e| format!("no pixels can be shown: {e}"))?;
     let mut app = App {
         viewer,
         worker,
@@ -52,8 +58,10 @@ pub(crate) fn run(viewer: Viewer, num_threads: usize, spin: Option<Duration>) ->
 /// Why there is no window; without the line of source that winit puts before the reason.
 fn no_window(error: &dyn std::error::Error) -> Refusal {
     let text = error.to_string();
-    let reason =
-        text.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": ")).map_or(&*text, |(_, reason)| reason);
+    let reason = text
+        .split_once(".rs:")
+        .and_then(|(_, rest)| rest.split_once(": "))
+        .map_or(&*text, |(_, reason)| reason);
     format!("no window can be opened: {reason}").into()
 }
 
@@ -97,14 +105,19 @@ impl Spin {
         let now = Instant::now();
         let (start, before) = *self.started.get_or_insert((now, viewer.num_drawn()));
         (self.took, self.num) = (now - start, viewer.num_drawn() - before);
-        viewer.act(Act::Turn((now - std::mem::replace(&mut self.last, now)).as_secs_f32().min(0.2) * SPIN, 0.0));
+        viewer.act(Act::Turn(
+            (now - std::mem::replace(&mut self.last, now)).as_secs_f32().min(0.2) * SPIN,
+            0.0,
+        ));
         self.took >= self.wanted
     }
 
     fn report(&self, viewer: &Viewer) -> String {
         let per_second = f64::from(self.num) / self.took.as_secs_f64().max(1e-9);
         let ([width, height], scale) = (viewer.size(), viewer.shown_scale());
-        format!("{per_second:.1} frames a second at {width}x{height}, the last in pixels of {scale}x{scale}")
+        format!(
+            "{per_second:.1} frames a second at {width}x{height}, the last in pixels of {scale}x{scale}"
+        )
     }
 }
 
@@ -138,8 +151,9 @@ impl App {
 
     fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Refusal> {
         let [width, height] = self.viewer.size();
-        let attributes =
-            Window::default_attributes().with_title("basrelief").with_inner_size(PhysicalSize::new(width, height));
+        let attributes = Window::default_attributes()
+            .with_title("basrelief")
+            .with_inner_size(PhysicalSize::new(width, height));
         let window = Rc::new(events.create_window(attributes).map_err(|e| no_window(&e))?);
         let surface = Surface::new(&self.context, window.clone()).map_err(|e| no_window(&e))?;
         self.shown = Some((window, surface));
@@ -185,16 +199,23 @@ impl App {
             let [dx, dy] = [place.x - before.x, place.y - before.y].map(|c| c as f32);
             let height = self.viewer.size()[1] as f32;
             let pans = button != MouseButton::Left || self.modifiers.shift_key();
-            let act =
-                if pans { Act::Pan(-dx / height, dy / height) } else { Act::Turn(-dx * DRAG_TURN, dy * DRAG_TURN) };
+            let act = if pans {
+                Act::Pan(-dx / height, dy / height)
+            } else {
+                Act::Turn(-dx * DRAG_TURN, dy * DRAG_TURN)
+            };
             self.act(events, act);
         }
     }
 
     fn button(&mut self, state: ElementState, button: MouseButton) {
         if state == ElementState::Pressed {
-            (self.pointer.pressed, self.pointer.is_dragging) = (Some((button, self.pointer.place)), false);
-        } else if self.pointer.pressed.take().is_some() && !self.pointer.is_dragging && button == MouseButton::Left {
+            (self.pointer.pressed, self.pointer.is_dragging) =
+                (Some((button, self.pointer.place)), false);
+        } else if self.pointer.pressed.take().is_some()
+            && !self.pointer.is_dragging
+            && button == MouseButton::Left
+        {
             let PhysicalPosition { x, y } = self.pointer.place;
             self.inspect(x, y);
         }
@@ -296,7 +317,10 @@ mod tests {
 
     #[test]
     fn number_keys_are_filters_and_shift_is_the_right_half() {
-        assert_eq!(act_of(KeyCode::Digit1, false), Some(Act::Filter { number: 0, is_right: false }));
+        assert_eq!(
+            act_of(KeyCode::Digit1, false),
+            Some(Act::Filter { number: 0, is_right: false })
+        );
         assert_eq!(act_of(KeyCode::Digit8, true), Some(Act::Filter { number: 7, is_right: true }));
         assert_eq!(act_of(KeyCode::KeyZ, false), None);
     }

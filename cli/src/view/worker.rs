@@ -1,4 +1,5 @@
-//! Draws frames on threads of its own, so that the window answers while a frame is drawn. Only the latest wish counts.
+//! Draws frames on threads of its own, so that the window answers while a frame is drawn. Only the
+//! latest wish counts.
 
 use basrelief::{Camera, Filter, Frame, Renderer, Scene, Settings};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -34,7 +35,10 @@ impl Worker {
         num_threads: usize,
         answer: impl Fn(Answer) + Send + 'static,
     ) -> Result<Self, String> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(num_threads).build().map_err(|e| e.to_string())?;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(num_threads)
+            .build()
+            .map_err(|e| e.to_string())?;
         let (wishes, inbox) = channel();
         std::thread::spawn(move || Painter::new(scene, pool).serve(&inbox, &answer));
         Ok(Self { wishes })
@@ -82,7 +86,11 @@ fn renderer(scene: Scene, pool: &rayon::ThreadPool) -> Result<Renderer, String> 
     pool.install(|| Renderer::new(scene, settings)).map_err(|e| e.to_string())
 }
 
-fn draw(renderer: &mut Renderer, camera: Camera, settings: Vec<Settings>) -> Result<Drawn, basrelief::Error> {
+fn draw(
+    renderer: &mut Renderer,
+    camera: Camera,
+    settings: Vec<Settings>,
+) -> Result<Drawn, basrelief::Error> {
     renderer.set_camera(camera)?;
     let mut drawn = Drawn { frames: Vec::new(), ms: 0.0 };
     for settings in settings {
@@ -118,7 +126,8 @@ mod tests {
             for _ in 0..2 {
                 worker.wish(Wish::Draw { camera, settings: settings.clone() });
                 let drawn = outbox.recv().unwrap().unwrap();
-                let expected = settings.iter().map(|half| render(scene.clone(), half.clone()).unwrap());
+                let expected =
+                    settings.iter().map(|half| render(scene.clone(), half.clone()).unwrap());
                 assert!(drawn.frames.into_iter().eq(expected));
             }
         }
@@ -128,7 +137,8 @@ mod tests {
     fn a_scene_that_cannot_be_drawn_is_answered_with_the_reason() {
         let (answers, outbox) = channel();
         let wrong = Scene { background: [f32::NAN; 4], ..scene::builtin() };
-        let worker = Worker::start(wrong, 1, move |answer: Answer| answers.send(answer).unwrap()).unwrap();
+        let worker =
+            Worker::start(wrong, 1, move |answer: Answer| answers.send(answer).unwrap()).unwrap();
         let camera = scene::builtin().camera;
         worker.wish(Wish::Draw { camera, settings: vec![Settings::default()] });
         let reason = outbox.recv().unwrap().err().unwrap();

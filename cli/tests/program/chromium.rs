@@ -1,5 +1,6 @@
-//! A headless Chromium that opens a file and is used as its user would: by keys, at a window's size, in light or dark.
-//! Speaks the browser's debugging protocol on a local port that the browser chooses.
+//! A headless Chromium that opens a file and is used as its user would: by keys, at a window's
+//! size, in light or dark. Speaks the browser's debugging protocol on a local port that the browser
+//! chooses.
 
 use base64::Engine;
 use serde_json::{Value, json};
@@ -34,7 +35,12 @@ impl Chromium {
         ]);
         command.args(["--disable-background-networking", "--disable-dev-shm-usage"]);
         command.arg(format!("--user-data-dir={}", profile.path().display())).arg("about:blank");
-        let browser = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()?;
+        let browser = command
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .ok()?;
         let port = wait_for(|| {
             let text = std::fs::read_to_string(profile.path().join("DevToolsActivePort")).ok()?;
             text.lines().next()?.parse::<u16>().ok()
@@ -86,8 +92,13 @@ impl Chromium {
 
     /// The value of an expression.
     pub(crate) fn value(&mut self, expression: &str) -> Value {
-        let result = self.call("Runtime.evaluate", json!({ "expression": expression, "returnByValue": true }));
-        assert!(result["exceptionDetails"].is_null(), "{expression}: {}", result["exceptionDetails"]);
+        let result = self
+            .call("Runtime.evaluate", json!({ "expression": expression, "returnByValue": true }));
+        assert!(
+            result["exceptionDetails"].is_null(),
+            "{expression}: {}",
+            result["exceptionDetails"]
+        );
         result["result"]["value"].clone()
     }
 
@@ -124,12 +135,16 @@ impl Chromium {
 
     fn note(&mut self, event: &Value) {
         let params = &event["params"];
-        let is_remote = |url: &str| !url.starts_with("file:") && !url.starts_with("data:") && url != "about:blank";
+        let is_remote = |url: &str| {
+            !url.starts_with("file:") && !url.starts_with("data:") && url != "about:blank"
+        };
         match event["method"].as_str().unwrap_or_default() {
             "Runtime.exceptionThrown" | "Log.entryAdded" | "Runtime.consoleAPICalled" => {
                 self.complaints.push(params.to_string());
             }
-            "Network.requestWillBeSent" if params["request"]["url"].as_str().is_some_and(is_remote) => {
+            "Network.requestWillBeSent"
+                if params["request"]["url"].as_str().is_some_and(is_remote) =>
+            {
                 self.complaints.push(format!("network: {}", params["request"]["url"]));
             }
             _ => {}
@@ -160,14 +175,17 @@ fn wait_for<T>(mut get: impl FnMut() -> Option<T>) -> T {
 fn page_url(port: u16) -> Option<String> {
     let mut stream = TcpStream::connect(("127.0.0.1", port)).ok()?;
     stream.set_read_timeout(Some(Duration::from_secs(10))).ok()?;
-    stream.write_all(b"GET /json/list HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n").ok()?;
+    stream
+        .write_all(b"GET /json/list HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+        .ok()?;
     let mut text = Vec::new();
     let mut buffer = [0; 4096];
     loop {
         let num = stream.read(&mut buffer).unwrap_or(0);
         text.extend_from_slice(&buffer[..num]);
         let whole = String::from_utf8_lossy(&text).into_owned();
-        let pages = whole.find("[").and_then(|start| serde_json::from_str::<Value>(&whole[start..]).ok());
+        let pages =
+            whole.find("[").and_then(|start| serde_json::from_str::<Value>(&whole[start..]).ok());
         if let Some(pages) = pages {
             let page = pages.as_array()?.iter().find(|page| page["type"] == json!("page"))?.clone();
             return page["webSocketDebuggerUrl"].as_str().map(str::to_owned);

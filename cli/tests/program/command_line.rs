@@ -134,14 +134,21 @@ fn disk_that_fills_up_leaves_the_old_file() {
     let folder = Folder::new();
     folder.put("out.bmp", "old");
     let program = env!("CARGO_BIN_EXE_basrelief");
-    let script = format!("trap '' XFSZ; ulimit -f 8; exec {program} quad.obj --size 200x200 -q -o out.bmp");
+    let script =
+        format!("trap '' XFSZ; ulimit -f 8; exec {program} quad.obj --size 200x200 -q -o out.bmp");
     let mut command = Command::new("sh");
     // Where coverage is measured, its own file would not fit either.
-    command.args(["-c", &script]).current_dir(folder.path(".")).env("LLVM_PROFILE_FILE", "/dev/null");
+    command
+        .args(["-c", &script])
+        .current_dir(folder.path("."))
+        .env("LLVM_PROFILE_FILE", "/dev/null");
     let output = command.output().unwrap();
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(message.starts_with("basrelief: out.bmp: cannot be written: File too large"), "{message}");
+    assert!(
+        message.starts_with("basrelief: out.bmp: cannot be written: File too large"),
+        "{message}"
+    );
     assert!(!message.contains(".tmp") && message.lines().count() == 1, "{message}");
     assert_eq!(names(&folder), ["out.bmp", "quad.obj"]);
     assert_eq!(fs::read(folder.path("out.bmp")).unwrap(), b"old");
@@ -215,15 +222,23 @@ fn every_option_is_accepted() {
 #[test]
 fn stats_have_every_figure() {
     let folder = Folder::new();
-    folder.succeeds("quad.obj --size 64x36 -o a.png --repeat 3 --threads 1 --filter nearest --stats stats.json");
+    folder.succeeds(
+        "quad.obj --size 64x36 -o a.png --repeat 3 --threads 1 --filter nearest --stats stats.json",
+    );
     let stats = json(&fs::read(folder.path("stats.json")).unwrap());
     let numbers = "frame_ms load_ms geometry_ms raster_ms binning_ms coverage_ms attributes_ms shade_ms pixels_shaded quads_shaded \
                    triangles_in triangles_drawn texels_tested texels_visible threads width height";
     for key in numbers.split_whitespace() {
         assert!(stats[key].as_f64().is_some_and(|value| value >= 0.0), "{key} in {stats}");
     }
-    assert_eq!((&stats["threads"], &stats["width"], &stats["height"]), (&1.into(), &64.into(), &36.into()));
-    assert_eq!((stats["simd"].as_str(), stats["filter"].as_str()), (Some(basrelief::SIMD_LEVEL), Some("nearest")));
+    assert_eq!(
+        (&stats["threads"], &stats["width"], &stats["height"]),
+        (&1.into(), &64.into(), &36.into())
+    );
+    assert_eq!(
+        (stats["simd"].as_str(), stats["filter"].as_str()),
+        (Some(basrelief::SIMD_LEVEL), Some("nearest"))
+    );
     assert_eq!(stats["version"], env!("CARGO_PKG_VERSION"));
     let printed = folder.succeeds("quad.obj --size 8x8 -q -o a.png --stats -");
     assert!(json(&printed.stdout)["frame_ms"].is_number());
@@ -233,7 +248,10 @@ fn stats_have_every_figure() {
 fn version_names_the_instruction_set() {
     let output = Folder::new().succeeds("--version");
     let said = text(&output.stdout);
-    assert!(said.contains(env!("CARGO_PKG_VERSION")) && said.contains(basrelief::SIMD_LEVEL), "{said}");
+    assert!(
+        said.contains(env!("CARGO_PKG_VERSION")) && said.contains(basrelief::SIMD_LEVEL),
+        "{said}"
+    );
 }
 
 #[test]
@@ -241,11 +259,18 @@ fn shells_and_readers_are_served() {
     let folder = Folder::new();
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let script = text(&folder.succeeds(&format!("completions {shell}")).stdout);
-        assert!(["basrelief", "turntable", "compare", "golden"].iter().all(|word| script.contains(word)), "{shell}");
+        assert!(
+            ["basrelief", "turntable", "compare", "golden"]
+                .iter()
+                .all(|word| script.contains(word)),
+            "{shell}"
+        );
     }
     let page = text(&folder.succeeds("man").stdout);
     assert!(
-        [".TH basrelief 1", ".SH OPTIONS", "far\\-field\\-mib", "130"].iter().all(|word| page.contains(word)),
+        [".TH basrelief 1", ".SH OPTIONS", "far\\-field\\-mib", "130"]
+            .iter()
+            .all(|word| page.contains(word)),
         "{page}"
     );
     fs::create_dir(folder.path("man1")).unwrap();
@@ -261,7 +286,10 @@ fn shells_and_readers_are_served() {
 fn help_says_what_exit_codes_mean() {
     let help = text(&Folder::new().succeeds("--help").stdout);
     assert!(help.contains("Exit codes:") && help.contains("NO_COLOR"), "{help}");
-    assert!(help.lines().all(|line| line.chars().count() <= 120), "wide terminals get no wider lines");
+    assert!(
+        help.lines().all(|line| line.chars().count() <= 120),
+        "wide terminals get no wider lines"
+    );
 }
 
 #[cfg(target_os = "linux")]
@@ -270,7 +298,9 @@ fn no_color_is_heeded_on_terminals() {
     // script(1) gives the program a terminal.
     let help = |no_color: Option<&str>| {
         let mut command = Command::new("script");
-        command.args(["-qec", concat!(env!("CARGO_BIN_EXE_basrelief"), " --help"), "/dev/null"]).env("TERM", "xterm");
+        command
+            .args(["-qec", concat!(env!("CARGO_BIN_EXE_basrelief"), " --help"), "/dev/null"])
+            .env("TERM", "xterm");
         command.env_remove("NO_COLOR").envs(no_color.map(|value| ("NO_COLOR", value)));
         command.stdin(std::process::Stdio::null()).output().map(|output| text(&output.stdout))
     };
@@ -285,15 +315,23 @@ fn no_color_is_heeded_on_terminals() {
 fn progress_tells_the_stages_on_terminals() {
     let folder = Folder::new();
     let mut command = Command::new("script");
-    let line = concat!(env!("CARGO_BIN_EXE_basrelief"), " quad.obj --albedo a.png --size 16x16 -o out.png");
+    let line = concat!(
+        env!("CARGO_BIN_EXE_basrelief"),
+        " quad.obj --albedo a.png --size 16x16 -o out.png"
+    );
     folder.put_image("a.png", [0.5, 0.25, 0.125, 1.0]);
     command.args(["-qec", line, "/dev/null"]).env("TERM", "xterm").current_dir(folder.path("."));
     let Ok(output) = command.stdin(std::process::Stdio::null()).output() else {
         return skipped("there is no script(1) on this machine");
     };
     let seen = text(&output.stdout);
-    let stages =
-        ["reading the model", "decoding images (1 of 1)", "building pyramids (1 of 1)", "building tables", "drawing"];
+    let stages = [
+        "reading the model",
+        "decoding images (1 of 1)",
+        "building pyramids (1 of 1)",
+        "building tables",
+        "drawing",
+    ];
     let places: Option<Vec<usize>> = stages.iter().map(|stage| seen.find(stage)).collect();
     assert!(output.status.success() && places.is_some_and(|places| places.is_sorted()), "{seen:?}");
     assert!(folder.succeeds("quad.obj --size 16x16 -o out.png").stderr.iter().all(|&c| c != b'\r'));
@@ -311,14 +349,20 @@ fn reader_that_has_seen_enough_is_no_error() {
             .unwrap();
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
-        assert!(output.status.success() && output.stderr.is_empty(), "{line}: {}", text(&output.stderr));
+        assert!(
+            output.status.success() && output.stderr.is_empty(),
+            "{line}: {}",
+            text(&output.stderr)
+        );
     }
 }
 
 #[test]
 fn float_output_is_linear() {
     let folder = Folder::new();
-    folder.succeeds("quad.obj --size 8x8 --eye -1,2,9 --target 0,5,20 --background #808080 -q -o a.exr");
+    folder.succeeds(
+        "quad.obj --size 8x8 --eye -1,2,9 --target 0,5,20 --background #808080 -q -o a.exr",
+    );
     let image = image::open(folder.path("a.exr")).unwrap();
     assert_eq!(image.color(), image::ColorType::Rgb32F);
     let linear = basrelief::texture::linear_from_srgb8(0x80);
@@ -343,7 +387,10 @@ fn different_images_are_measured() {
     frame.pixels[3 * 16 + 5][2] = 0.0;
     frame.save(folder.path("b.png")).unwrap();
     let report = json(&folder.succeeds("compare a.png b.png --json --heatmap h.png").stdout);
-    assert_eq!((&report["x"], &report["y"], report["channel"].as_str()), (&5.into(), &3.into(), Some("blue")));
+    assert_eq!(
+        (&report["x"], &report["y"], report["channel"].as_str()),
+        (&5.into(), &3.into(), Some("blue"))
+    );
     // 0.5 in linear light is byte 188; one channel of one pixel of 192 is off by 188 / 255.
     let expected = 10.0 * (16.0 * 12.0 * 3.0 / (188.0_f64 / 255.0).powi(2)).log10();
     assert!((report["psnr_db"].as_f64().unwrap() - expected).abs() < 1e-4, "{report}");
@@ -360,17 +407,22 @@ fn images_that_cannot_be_compared_are_refused() {
     folder.put_image("a.png", [0.5, 0.5, 0.5, 1.0]);
     folder.put_image("clear.png", [0.0; 4]);
     Frame::filled(3, 2, [1.0; 4]).save(folder.path("small.png")).unwrap();
-    folder.refuses("compare a.png small.png --heatmap h.png", &["a.png", "small.png", "16x12", "3x2"]);
+    folder.refuses(
+        "compare a.png small.png --heatmap h.png",
+        &["a.png", "small.png", "16x12", "3x2"],
+    );
     folder.refuses("compare a.png clear.png", &["opaque"]);
     folder.refuses("compare a.png a.png --min-psnr nan", &["--min-psnr"]);
     folder.refuses("compare a.png a.png --heatmap-max 0", &["--heatmap-max"]);
 }
 
-/// Runs two ways to overwrite `out.png` in turn, ended by `end` at `num` moments spread over a whole run.
+/// Runs two ways to overwrite `out.png` in turn, ended by `end` at `num` moments spread over a
+/// whole run.
 #[cfg(unix)]
 fn interrupt(folder: &Folder, num: u32, end: impl Fn(&mut std::process::Child)) {
-    let lines =
-        ["white", "navy"].map(|color| format!("quad.obj --size 320x180 -q -f nearest -o out.png --background {color}"));
+    let lines = ["white", "navy"].map(|color| {
+        format!("quad.obj --size 320x180 -q -f nearest -o out.png --background {color}")
+    });
     let mut longest = std::time::Duration::ZERO;
     let whole = lines.each_ref().map(|line| {
         let start = std::time::Instant::now();

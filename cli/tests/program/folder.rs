@@ -7,7 +7,8 @@ use std::path::PathBuf;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-const QUAD: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+const QUAD: &str =
+    "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
 
 /// A folder with `quad.obj`, in which the program runs.
 pub(crate) struct Folder(TempDir);
@@ -44,8 +45,10 @@ impl Folder {
     /// Names and contents of all files.
     pub(crate) fn contents(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let paths = fs::read_dir(self.0.path()).unwrap().map(|entry| entry.unwrap().path());
-        let mut files: Vec<_> =
-            paths.filter(|path| path.is_file()).map(|p| (p.clone(), fs::read(&p).unwrap())).collect();
+        let mut files: Vec<_> = paths
+            .filter(|path| path.is_file())
+            .map(|p| (p.clone(), fs::read(&p).unwrap()))
+            .collect();
         files.sort();
         files
     }
@@ -57,20 +60,28 @@ impl Folder {
         output
     }
 
-    /// Checks that the program refuses: exit code 2, one line with `words` on stderr, nothing printed or written.
+    /// Checks that the program refuses: exit code 2, one line with `words` on stderr, nothing
+    /// printed or written.
     pub(crate) fn refuses(&self, line: &str, words: &[&str]) {
         let before = self.contents();
         let output = self.run(line);
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{line}: {message}");
-        assert!(message.starts_with("basrelief: ") && message.lines().count() == 1, "{line}: {message}");
-        assert!(words.iter().all(|word| message.contains(word)), "{line}: {message} lacks one of {words:?}");
+        assert!(
+            message.starts_with("basrelief: ") && message.lines().count() == 1,
+            "{line}: {message}"
+        );
+        assert!(
+            words.iter().all(|word| message.contains(word)),
+            "{line}: {message} lacks one of {words:?}"
+        );
         assert!(output.stdout.is_empty(), "{line} prints");
         assert!(self.contents() == before, "{line} writes");
     }
 }
 
-/// Says that a test cannot look at what it is about; past the harness, which shows only what failed tests print.
+/// Says that a test cannot look at what it is about; past the harness, which shows only what failed
+/// tests print.
 pub(crate) fn skipped(why: &str) {
     std::io::stderr().write_all(format!("skipped: {why}\n").as_bytes()).unwrap();
 }

@@ -23,7 +23,10 @@ fn turntable_draws_numbered_frames_that_differ() {
     let folder = folder_with(&["a"]);
     folder.succeeds(&format!("{SMALL} --turntable 5 -o a/f##.png"));
     let frames = pictures(&folder, "a");
-    assert_eq!(frames.keys().collect::<Vec<_>>(), ["f01.png", "f02.png", "f03.png", "f04.png", "f05.png"]);
+    assert_eq!(
+        frames.keys().collect::<Vec<_>>(),
+        ["f01.png", "f02.png", "f03.png", "f04.png", "f05.png"]
+    );
     let different: std::collections::BTreeSet<_> = frames.values().collect();
     assert_eq!(different.len(), 5);
     // The first is the still picture.
@@ -38,7 +41,10 @@ fn turntable_draws_numbered_frames_that_differ() {
 fn frames_are_picked_and_those_past_the_end_are_no_error() {
     let folder = folder_with(&["a", "b"]);
     folder.succeeds(&format!("{SMALL} --turntable 12 -o a/#.png --frames 2-100x4,11"));
-    assert_eq!(pictures(&folder, "a").keys().collect::<Vec<_>>(), ["10.png", "11.png", "2.png", "6.png"]);
+    assert_eq!(
+        pictures(&folder, "a").keys().collect::<Vec<_>>(),
+        ["10.png", "11.png", "2.png", "6.png"]
+    );
     folder.succeeds(&format!("{SMALL} --turntable 12 -o b/#.png --frames 13-99"));
     assert!(pictures(&folder, "b").is_empty());
 }
@@ -101,7 +107,10 @@ fn single_pictures_take_no_notice_of_a_cluster() {
 #[test]
 fn camera_path_is_followed() {
     let folder = folder_with(&["a"]);
-    folder.put("path.toml", "[[key]]\nframe = 3\neye = [0, 0, 4]\n[[key]]\nframe = 5\neye = [1.0, 0, 3]\nfov = 30\n");
+    folder.put(
+        "path.toml",
+        "[[key]]\nframe = 3\neye = [0, 0, 4]\n[[key]]\nframe = 5\neye = [1.0, 0, 3]\nfov = 30\n",
+    );
     folder.succeeds(&format!("{SMALL} --target 0,0,0 --camera-path path.toml -o a/#.png"));
     let frames = pictures(&folder, "a");
     assert_eq!(frames.keys().collect::<Vec<_>>(), ["3.png", "4.png", "5.png"]);
@@ -146,8 +155,10 @@ fn every_picture_is_a_line_of_json() {
     let folder = folder_with(&["a"]);
     let output = folder.succeeds(&format!("{SMALL} --turntable 3 -o a/#.png --json"));
     let lines: Vec<_> = output.stdout.split_inclusive(|&byte| byte == b'\n').map(json).collect();
-    let seen: Vec<_> =
-        lines.iter().map(|line| (line["file"].as_str().unwrap(), line["frame"].as_u64().unwrap())).collect();
+    let seen: Vec<_> = lines
+        .iter()
+        .map(|line| (line["file"].as_str().unwrap(), line["frame"].as_u64().unwrap()))
+        .collect();
     assert_eq!(seen, [("a/1.png", 1), ("a/2.png", 2), ("a/3.png", 3)]);
     let still = json(&folder.succeeds(&format!("{SMALL} -o b.png --json")).stdout);
     assert!(still["file"] == "b.png" && still["frame"].is_null() && still["frame_ms"].is_number());
@@ -166,7 +177,9 @@ fn existing_picture_is_left_alone() {
 fn joined_parts_are_the_whole() {
     let folder = Folder::new();
     for background in ["skyblue", "transparent"] {
-        let line = format!("quad.obj -q --size 90x70 --background {background} --eye 0.4,0.5,2 --target 0,0,0");
+        let line = format!(
+            "quad.obj -q --size 90x70 --background {background} --eye 0.4,0.5,2 --target 0,0,0"
+        );
         folder.succeeds(&format!("{line} -o whole.png"));
         // Columns and rows that are odd, and parts without any pixel of the quad.
         let parts = ["0,0,33,41", "33,0,57,17", "33,17,57,24", "0,41,1,29", "1,41,89,29"];
@@ -174,9 +187,13 @@ fn joined_parts_are_the_whole() {
             folder.succeeds(&format!("{line} --region {part} -o part{i}.png"));
         }
         folder.succeeds("join part3.png part0.png part4.png part1.png part2.png -o joined.png");
-        let [whole, joined] = ["whole.png", "joined.png"].map(|name| fs::read(folder.path(name)).unwrap());
+        let [whole, joined] =
+            ["whole.png", "joined.png"].map(|name| fs::read(folder.path(name)).unwrap());
         assert!(whole == joined, "{background}");
-        assert_eq!(folder.succeeds("join part3.png part0.png part4.png part1.png part2.png -o -").stdout, whole);
+        assert_eq!(
+            folder.succeeds("join part3.png part0.png part4.png part1.png part2.png -o -").stdout,
+            whole
+        );
     }
 }
 
@@ -222,7 +239,8 @@ fn parts_that_do_not_fit_are_refused() {
 
 #[test]
 fn picture_in_bands_is_the_picture_of_its_parts() {
-    // Just above the size from which on bands are drawn, 2^24 pixels, of 128 rows each; parts are drawn at once.
+    // Just above the size from which on bands are drawn, 2^24 pixels, of 128 rows each; parts are
+    // drawn at once.
     let folder = Folder::new();
     let line = "quad.obj -q --size 32768x520 -f nearest --eye 0,0,0.02 --target 0,0,0 --background #204060";
     folder.succeeds(&format!("{line} -o whole.png"));
@@ -230,6 +248,7 @@ fn picture_in_bands_is_the_picture_of_its_parts() {
         folder.succeeds(&format!("{line} --region {rows} -o {i}.png"));
     }
     folder.succeeds("join 0.png 1.png -o joined.png");
-    let [whole, joined] = ["whole.png", "joined.png"].map(|name| fs::read(folder.path(name)).unwrap());
+    let [whole, joined] =
+        ["whole.png", "joined.png"].map(|name| fs::read(folder.path(name)).unwrap());
     assert!(whole == joined);
 }

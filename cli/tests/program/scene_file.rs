@@ -15,7 +15,11 @@ fn model() -> Folder {
     );
     folder.put("model/two.mtl", "newmtl left\nKd 0.2 0.4 0.6\nnewmtl right\nKd 0.6 0.4 0.2\n");
     let mut map = Frame::filled(16, 16, [0.25, 0.25, 0.25, 1.0]);
-    map.pixels.iter_mut().enumerate().filter(|(i, _)| i % 3 > 0).for_each(|(_, pixel)| *pixel = [0.9, 0.8, 0.7, 1.0]);
+    map.pixels
+        .iter_mut()
+        .enumerate()
+        .filter(|(i, _)| i % 3 > 0)
+        .for_each(|(_, pixel)| *pixel = [0.9, 0.8, 0.7, 1.0]);
     map.save(folder.path("model/map.png")).unwrap();
     folder
 }
@@ -96,7 +100,9 @@ max-textures = 3
     );
     assert!(bytes(&folder, "a.png") == bytes(&folder, "b.png"));
     // Options override keys; an off overrides an on.
-    folder.succeeds("model/scene.toml -q -o a.png --size 20x10 --fov 70 --cull=off --filter bilinear");
+    folder.succeeds(
+        "model/scene.toml -q -o a.png --size 20x10 --fov 70 --cull=off --filter bilinear",
+    );
     assert_eq!(image::image_dimensions(folder.path("a.png")).unwrap(), (20, 10));
     folder.succeeds(
         "model/two.obj -q -o b.png --albedo model/map.png --relief-depth 0.1 --wrap clamp --eye 0.5,1,2.5 --target 0,0,0 --fov 70 \
@@ -112,7 +118,9 @@ fn single_materials_can_be_different() {
     let draw = |lines: &str| {
         folder.put(
             "model/scene.toml",
-            format!("model = 'two.obj'\n{lines}\n[frame]\nsize = '32x16'\n[camera]\neye = [0, 0, 2]\n"),
+            format!(
+                "model = 'two.obj'\n{lines}\n[frame]\nsize = '32x16'\n[camera]\neye = [0, 0, 2]\n"
+            ),
         );
         folder.succeeds("model/scene.toml -q -o a.png");
         let image = image::open(folder.path("a.png")).unwrap().to_rgba8();
@@ -123,7 +131,9 @@ fn single_materials_can_be_different() {
     let changed = draw("[material.right]\ndiffuse = [0.2, 0.4, 0.6]");
     assert_eq!(changed, [left, left]);
     // What is said of one goes before what is said of all.
-    let changed = draw("[all-materials]\ndiffuse = [0.6, 0.4, 0.2]\n[material.left]\ndiffuse = [0.2, 0.4, 0.6]");
+    let changed = draw(
+        "[all-materials]\ndiffuse = [0.6, 0.4, 0.2]\n[material.left]\ndiffuse = [0.2, 0.4, 0.6]",
+    );
     assert_eq!(changed, [left, right]);
     let changed = draw("[material.left]\nalbedo = 'map.png'\ndiffuse = [1, 1, 1]");
     assert!(changed[0] != left && changed[1] == right, "{changed:?}");
@@ -153,7 +163,10 @@ fn mistakes_are_named_with_file_and_line() {
         ("fov 3", &["s.toml:1"]),
         ("model = 'missing.obj'", &["missing.obj"]),
         ("model = 'model/two.obj'\n[all-materials]\nheight = 'missing.png'", &["missing.png"]),
-        ("model = 'model/two.obj'\n[material.middle]\nheight = 'model/map.png'", &["middle", "left, right"]),
+        (
+            "model = 'model/two.obj'\n[material.middle]\nheight = 'model/map.png'",
+            &["middle", "left, right"],
+        ),
         ("[all-materials]\nheight = 'model/map.png'", &["model"]),
     ] {
         folder.put("s.toml", lines);
@@ -169,8 +182,13 @@ fn mistakes_are_named_with_file_and_line() {
 #[test]
 fn saved_scene_names_files_relative_to_itself() {
     let folder = model();
-    folder.succeeds("model/two.obj -q --size 8x8 -o a.png --albedo model/map.png --save-scene model/kept.toml");
+    folder.succeeds(
+        "model/two.obj -q --size 8x8 -o a.png --albedo model/map.png --save-scene model/kept.toml",
+    );
     let kept = text(&bytes(&folder, "model/kept.toml"));
-    assert!(kept.contains("model = \"two.obj\"") && kept.contains("albedo = \"map.png\""), "{kept}");
+    assert!(
+        kept.contains("model = \"two.obj\"") && kept.contains("albedo = \"map.png\""),
+        "{kept}"
+    );
     assert!(!kept.contains("all-materials.albedo = \"/"), "{kept}");
 }

@@ -14,13 +14,18 @@ fn figures_are_pictures_with_numbers() {
         let name = format!("figure{figure}.png");
         let output = folder.succeeds(&format!("inspect --figure {figure} -o {name}"));
         let numbers = text(&output.stdout);
-        for part in
-            ["formula (2) as meant", "formula (3) as printed", "F = (Ux Vy + Uy Vx)^2", "T_vis", "the horizon rise"]
-        {
+        for part in [
+            "formula (2) as meant",
+            "formula (3) as printed",
+            "F = (Ux Vy + Uy Vx)^2",
+            "T_vis",
+            "the horizon rise",
+        ] {
             assert!(numbers.contains(part), "{part}: {numbers}");
         }
         let picture = picture(folder.path(&name));
-        let num_colors = picture.pixels().map(|p| p.0).collect::<std::collections::HashSet<_>>().len();
+        let num_colors =
+            picture.pixels().map(|p| p.0).collect::<std::collections::HashSet<_>>().len();
         assert!(picture.dimensions().0 > 1000 && num_colors > 500, "{num_colors} colours");
     }
 }
@@ -45,8 +50,14 @@ fn a_pixel_of_a_mesh_of_ones_own_is_inspected() {
     heights.save(folder.path("height.png")).unwrap();
     let line = "inspect quad.obj --height height.png --size 64x36 --pixel 32,18";
     let numbers = text(&folder.succeeds(line).stdout);
-    assert!(numbers.contains("level 0 (16x16 a repeat)") && numbers.contains("pixel 32,18 of 64x36"), "{numbers}");
-    folder.refuses("inspect quad.obj --height height.png --size 64x36 --pixel 0,0", &["--pixel 0,0", "no surface"]);
+    assert!(
+        numbers.contains("level 0 (16x16 a repeat)") && numbers.contains("pixel 32,18 of 64x36"),
+        "{numbers}"
+    );
+    folder.refuses(
+        "inspect quad.obj --height height.png --size 64x36 --pixel 0,0",
+        &["--pixel 0,0", "no surface"],
+    );
 }
 
 #[test]
@@ -57,9 +68,16 @@ fn wrong_pixels_are_refused() {
     folder.refuses("inspect --pixel 9999,3 --size 64x36", &["--pixel 9999,3", "64x36"]);
     folder.refuses("inspect --figure 7", &["--figure"]);
     folder.refuses("inspect --figure 2 --pixel 1,2", &["--figure", "--pixel"]);
-    for option in ["quad.obj", "--size 64x36", "--filter ewa", "--eye 0,0,1", "--background red", "--formulas printed"]
-    {
-        folder.refuses(&format!("inspect --figure 2 {option}"), &["--figure", "cannot be used with"]);
+    for option in [
+        "quad.obj",
+        "--size 64x36",
+        "--filter ewa",
+        "--eye 0,0,1",
+        "--background red",
+        "--formulas printed",
+    ] {
+        folder
+            .refuses(&format!("inspect --figure 2 {option}"), &["--figure", "cannot be used with"]);
     }
     folder.refuses("inspect --pixel 1,2 --region 0,0,8,8", &["--region"]);
     folder.refuses("inspect --figure 2 --json -o -", &["--json", "--output"]);

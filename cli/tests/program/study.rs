@@ -1,4 +1,5 @@
-//! The page of `basrelief study` as a browser shows it. Without Chromium on the machine only its text is looked at.
+//! The page of `basrelief study` as a browser shows it. Without Chromium on the machine only its
+//! text is looked at.
 
 use crate::chromium::Chromium;
 use crate::folder::{Folder, skipped};
@@ -9,7 +10,19 @@ use std::process::Command;
 /// A study of the built-in scene, small and soon done.
 fn study(folder: &Path) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_basrelief"));
-    command.args(["study", "--size", "160x90", "--truth-samples", "16", "--repeat", "1", "--quiet", "-o"]).arg(folder);
+    command
+        .args([
+            "study",
+            "--size",
+            "160x90",
+            "--truth-samples",
+            "16",
+            "--repeat",
+            "1",
+            "--quiet",
+            "-o",
+        ])
+        .arg(folder);
     let output = command.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
@@ -52,7 +65,9 @@ fn page_works_without_network_in_light_and_dark_by_keys_on_any_width() {
 
 fn check_files(folder: &Path) {
     let html = std::fs::read_to_string(folder.join("index.html")).unwrap();
-    let elsewhere = html.match_indices("http").filter(|(i, _)| !html[*i..].starts_with("http://www.w3.org/2000/svg"));
+    let elsewhere = html
+        .match_indices("http")
+        .filter(|(i, _)| !html[*i..].starts_with("http://www.w3.org/2000/svg"));
     assert_eq!(elsewhere.count(), 0, "nothing comes from elsewhere");
     let table = std::fs::read_to_string(folder.join("study.csv")).unwrap();
     let rows: Vec<&str> = table.lines().skip(1).collect();
@@ -74,15 +89,19 @@ fn check_wipe(page: &mut Chromium) {
     }
     assert_eq!(page.value("document.getElementById('slider').value"), json!("54"));
     assert_ne!(page.value(clip), before, "the picture follows the slider");
-    let bar =
-        number(&page.value("document.getElementById('bar').offsetLeft / document.getElementById('wipe').clientWidth"));
+    let bar = number(&page.value(
+        "document.getElementById('bar').offsetLeft / document.getElementById('wipe').clientWidth",
+    ));
     assert!((bar - 0.54).abs() < 0.01, "the bar follows the slider: {bar}");
     page.press("3", "Digit3", false);
     page.press("%", "Digit5", true);
-    let chosen = "[document.getElementById('left').value, document.getElementById('right').value].join()";
+    let chosen =
+        "[document.getElementById('left').value, document.getElementById('right').value].join()";
     assert_eq!(page.value(chosen), json!("3,5"));
     let shows = |side: &str, name: &str| {
-        format!("document.getElementById('{side}').src === document.querySelector('[data-name=\"{name}\"]').src")
+        format!(
+            "document.getElementById('{side}').src === document.querySelector('[data-name=\"{name}\"]').src"
+        )
     };
     assert_eq!(page.value(&shows("over", "trilinear")), json!(true));
     assert_eq!(page.value(&shows("under", "EWA (3)")), json!(true));

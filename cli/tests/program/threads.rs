@@ -9,7 +9,8 @@ use std::process::Command;
 fn num_threads(folder: &Folder, before: &str) -> u64 {
     let program = env!("CARGO_BIN_EXE_basrelief");
     let line = format!("{before} exec {program} quad.obj --size 32x18 -o a.png --quiet --stats -");
-    let output = Command::new("sh").args(["-ec", &line]).current_dir(folder.path(".")).output().unwrap();
+    let output =
+        Command::new("sh").args(["-ec", &line]).current_dir(folder.path(".")).output().unwrap();
     assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
     json(&output.stdout)["threads"].as_u64().unwrap()
 }
@@ -18,7 +19,8 @@ fn num_threads(folder: &Folder, before: &str) -> u64 {
 struct Group(PathBuf);
 
 impl Group {
-    /// A group that may use `share` of a processor's time in each tenth of a second, where this process may make one.
+    /// A group that may use `share` of a processor's time in each tenth of a second, where this
+    /// process may make one.
     fn new(share: f64) -> Option<Self> {
         let name = format!("basrelief-test-{}", std::process::id());
         let quota = (share * 1e5) as u32;
@@ -28,7 +30,8 @@ impl Group {
             let is_there = group.0.join(file).is_file();
             (is_there && fs::write(group.0.join(file), content).is_ok()).then_some(group)
         };
-        // Version 1 gives the processor a tree of its own; in version 2 the root's groups may need to be given it.
+        // Version 1 gives the processor a tree of its own; in version 2 the root's groups may need
+        // to be given it.
         let of_version_2 = || {
             // Refused where it is given already.
             let _ = fs::write("/sys/fs/cgroup/cgroup.subtree_control", "+cpu");

@@ -1,4 +1,5 @@
-//! The window of `basrelief view` on a virtual screen. Without Xvfb on the machine these tests say that they are skipped.
+//! The window of `basrelief view` on a virtual screen. Without Xvfb on the machine these tests say
+//! that they are skipped.
 
 use crate::folder::skipped;
 use crate::xvfb::{Screen, Shot};
@@ -11,7 +12,10 @@ const SIZE: [usize; 2] = [320, 180];
 fn viewer(screen: &Screen, options: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_basrelief"));
     command.args(["view", "--size", "320x180"]).args(options.split_whitespace());
-    command.env("DISPLAY", &screen.display).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+    command
+        .env("DISPLAY", &screen.display)
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET");
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -39,7 +43,8 @@ fn half(shot: &Shot, is_right: bool) -> Vec<[u8; 3]> {
 
 /// How far two parts are apart: mean of absolute differences of bytes.
 fn apart(a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
-    let sum: u64 = a.as_flattened().iter().zip(b.as_flattened()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    let sum: u64 =
+        a.as_flattened().iter().zip(b.as_flattened()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
     sum as f64 / (3 * a.len()) as f64
 }
 
@@ -50,7 +55,8 @@ fn keep(shot: &Shot, name: &str) {
             [r, g, b, 1.0]
         };
         let (width, height) = (shot.width as u32, (shot.pixels.len() / shot.width) as u32);
-        let frame = basrelief::Frame { width, height, pixels: shot.pixels.iter().map(linear).collect() };
+        let frame =
+            basrelief::Frame { width, height, pixels: shot.pixels.iter().map(linear).collect() };
         frame.save(Path::new(&folder).join(name)).unwrap();
     }
 }
@@ -60,10 +66,12 @@ fn window_shows_the_scene_and_answers_keys_mouse_and_files() {
     let Some(screen) = screen() else { return };
     let viewer = viewer(&screen, "--filter nearest --far-field off");
     let window = screen.window();
-    let shows_street = |shot: &Shot| half(shot, false).iter().any(|p| p[2] > p[0] + 20) && shot.width == SIZE[0];
+    let shows_street =
+        |shot: &Shot| half(shot, false).iter().any(|p| p[2] > p[0] + 20) && shot.width == SIZE[0];
     let first = screen.wait_for(window, "the sky above the street", shows_street);
     let expected = {
-        let settings = basrelief::Settings { width: 320, height: 180, ..basrelief::Settings::default() };
+        let settings =
+            basrelief::Settings { width: 320, height: 180, ..basrelief::Settings::default() };
         let settings = basrelief::Settings { filter: basrelief::Filter::Nearest, ..settings };
         basrelief::render(basrelief::scene::builtin(), settings).unwrap().to_rgb8()
     };
@@ -76,7 +84,8 @@ fn window_shows_the_scene_and_answers_keys_mouse_and_files() {
     assert!(apart(&half(&first, false), &half(&ewa, false)) > 0.5);
 
     screen.press(0xff09);
-    let split = screen.wait_for(window, "a split window", |shot| half(shot, true) != half(&ewa, true));
+    let split =
+        screen.wait_for(window, "a split window", |shot| half(shot, true) != half(&ewa, true));
     assert_eq!(half(&split, false), half(&ewa, false), "the left half stays");
     keep(&split, "view-split.png");
     screen.press(0xff09);
@@ -85,7 +94,8 @@ fn window_shows_the_scene_and_answers_keys_mouse_and_files() {
     screen.point([80, 150]);
     screen.button(1, true);
     screen.button(1, false);
-    let is_inspected = |shot: &Shot| half(shot, true).iter().filter(|p| **p == [255; 3]).count() > 2000;
+    let is_inspected =
+        |shot: &Shot| half(shot, true).iter().filter(|p| **p == [255; 3]).count() > 2000;
     let inspected = screen.wait_for(window, "the inspector", is_inspected);
     assert_eq!(half(&inspected, false), half(&ewa, false), "it lies on the right side");
     keep(&inspected, "view-inspector.png");
@@ -112,7 +122,8 @@ fn spin_says_how_many_frames_a_second_there_were() {
     let output = finish(viewer(&screen, "--spin 2 --filter horizon --far-field off"));
     let text = String::from_utf8(output.stdout).unwrap();
     let per_second: f64 = text.split(' ').next().unwrap().parse().unwrap();
-    // A bound for a busy machine that builds with checks on; the goal, 15 at 640x360, is measured of a release build.
+    // A bound for a busy machine that builds with checks on; the goal, 15 at 640x360, is measured
+    // of a release build.
     assert!(per_second > 3.0 && text.contains("frames a second at 320x180"), "{text}");
 }
 
@@ -124,5 +135,8 @@ fn without_a_screen_the_reason_is_one_line() {
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{text}");
     let last = text.lines().last().unwrap();
-    assert!(last.starts_with("basrelief: no window can be opened: ") && !last.contains(".rs"), "{text}");
+    assert!(
+        last.starts_with("basrelief: no window can be opened: ") && !last.contains(".rs"),
+        "{text}"
+    );
 }

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use x11rb::connection::Connection;
 use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
-    self, Atom, ClientMessageEvent, ConnectionExt as _, EventMask, ImageFormat, InputFocus, PropMode,
-    SelectionNotifyEvent, Window,
+    self, Atom, ClientMessageEvent, ConnectionExt as _, EventMask, ImageFormat, InputFocus,
+    PropMode, SelectionNotifyEvent, Window,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
@@ -32,8 +32,21 @@ impl Screen {
     /// Starts the server, if there is one.
     pub(crate) fn start(width: u32, height: u32) -> Option<Self> {
         let mut command = Command::new("Xvfb");
-        command.args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0", &format!("{width}x{height}x24")]);
-        let mut server = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
+        command.args([
+            "-displayfd",
+            "1",
+            "-nolisten",
+            "tcp",
+            "-screen",
+            "0",
+            &format!("{width}x{height}x24"),
+        ]);
+        let mut server = command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .ok()?;
         let mut number = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let display = format!(":{}", number.trim());
@@ -62,13 +75,22 @@ impl Screen {
     pub(crate) fn shot(&self, window: Window) -> Shot {
         let geometry = self.connection.get_geometry(window).unwrap().reply().unwrap();
         let (width, height) = (geometry.width, geometry.height);
-        let image = self.connection.get_image(ImageFormat::Z_PIXMAP, window, 0, 0, width, height, u32::MAX);
+        let image =
+            self.connection.get_image(ImageFormat::Z_PIXMAP, window, 0, 0, width, height, u32::MAX);
         let data = image.unwrap().reply().unwrap().data;
-        Shot { width: usize::from(width), pixels: data.chunks_exact(4).map(|p| [p[2], p[1], p[0]]).collect() }
+        Shot {
+            width: usize::from(width),
+            pixels: data.chunks_exact(4).map(|p| [p[2], p[1], p[0]]).collect(),
+        }
     }
 
     /// Waits until a window shows what is asked for, and then no more change.
-    pub(crate) fn wait_for(&self, window: Window, what: &str, is_there: impl Fn(&Shot) -> bool) -> Shot {
+    pub(crate) fn wait_for(
+        &self,
+        window: Window,
+        what: &str,
+        is_there: impl Fn(&Shot) -> bool,
+    ) -> Shot {
         let mut last = self.shot(window);
         let mut since = Instant::now();
         wait_for(what, || {
@@ -87,9 +109,13 @@ impl Screen {
     pub(crate) fn press(&self, keysym: u32) {
         let setup = self.connection.setup();
         let (first, last) = (setup.min_keycode, setup.max_keycode);
-        let map = self.connection.get_keyboard_mapping(first, last - first + 1).unwrap().reply().unwrap();
+        let map =
+            self.connection.get_keyboard_mapping(first, last - first + 1).unwrap().reply().unwrap();
         let per_key = usize::from(map.keysyms_per_keycode);
-        let key = map.keysyms.chunks(per_key).position(|syms| syms[0] == keysym).expect("a key for it") as u8 + first;
+        let key =
+            map.keysyms.chunks(per_key).position(|syms| syms[0] == keysym).expect("a key for it")
+                as u8
+                + first;
         self.event(xproto::KEY_PRESS_EVENT, key, [0, 0]);
         self.event(xproto::KEY_RELEASE_EVENT, key, [0, 0]);
     }
@@ -101,11 +127,17 @@ impl Screen {
 
     /// Presses or lets go of a mouse button.
     pub(crate) fn button(&self, number: u8, is_down: bool) {
-        self.event(if is_down { xproto::BUTTON_PRESS_EVENT } else { xproto::BUTTON_RELEASE_EVENT }, number, [0, 0]);
+        self.event(
+            if is_down { xproto::BUTTON_PRESS_EVENT } else { xproto::BUTTON_RELEASE_EVENT },
+            number,
+            [0, 0],
+        );
     }
 
     fn event(&self, kind: u8, detail: u8, [x, y]: [i16; 2]) {
-        self.connection.xtest_fake_input(kind, detail, x11rb::CURRENT_TIME, self.root, x, y, 0).unwrap();
+        self.connection
+            .xtest_fake_input(kind, detail, x11rb::CURRENT_TIME, self.root, x, y, 0)
+            .unwrap();
         self.connection.sync().unwrap();
         std::thread::sleep(Duration::from_millis(30));
     }
@@ -121,7 +153,8 @@ impl Screen {
         let aux = xproto::CreateWindowAux::new();
         let class = xproto::WindowClass::INPUT_OUTPUT;
         connection.create_window(0, source, self.root, 700, 500, 1, 1, 0, class, 0, &aux).unwrap();
-        let [selection, list, copy] = ["XdndSelection", "text/uri-list", "XdndActionCopy"].map(|name| self.atom(name));
+        let [selection, list, copy] =
+            ["XdndSelection", "text/uri-list", "XdndActionCopy"].map(|name| self.atom(name));
         connection.set_selection_owner(source, selection, x11rb::CURRENT_TIME).unwrap();
         let send = |name: &str, data: [u32; 5]| {
             let message = ClientMessageEvent::new(32, window, self.atom(name), data);
@@ -132,9 +165,19 @@ impl Screen {
         send("XdndPosition", [source, 0, 50 << 16 | 50, 0, copy]);
         let uris = format!("file://{}\r\n", path.display());
         wait_for("the window asks what is dropped", || {
-            let Event::SelectionRequest(request) = connection.poll_for_event().unwrap()? else { return None };
+            let Event::SelectionRequest(request) = connection.poll_for_event().unwrap()? else {
+                return None;
+            };
             let property = request.property;
-            connection.change_property8(PropMode::REPLACE, request.requestor, property, list, uris.as_bytes()).unwrap();
+            connection
+                .change_property8(
+                    PropMode::REPLACE,
+                    request.requestor,
+                    property,
+                    list,
+                    uris.as_bytes(),
+                )
+                .unwrap();
             let event = SelectionNotifyEvent {
                 response_type: xproto::SELECTION_NOTIFY_EVENT,
                 sequence: 0,

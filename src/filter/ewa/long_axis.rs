@@ -1,9 +1,11 @@
-//! The mean over an ellipse from the texels next to its longer axis, on a level about as coarse as its shorter one.
+//! The mean over an ellipse from the texels next to its longer axis, on a level about as coarse as
+//! its shorter one.
 //!
-//! The longer axis is a line through the texels of that level. Along it weighs the Gaussian; across it, in each column that it
-//! crosses, a triangle, which is interpolation or as much wider as the ellipse asks for: what the level averages has a
-//! variance of `(4^l - 1) / 12` square base texels on level l, the triangle a sixth of its half width's square. So an ellipse
-//! takes few texels, in runs that lie in a few rows.
+//! The longer axis is a line through the texels of that level. Along it weighs the Gaussian; across
+//! it, in each column that it crosses, a triangle, which is interpolation or as much wider as the
+//! ellipse asks for: what the level averages has a variance of `(4^l - 1) / 12` square base texels
+//! on level l, the triangle a sixth of its half width's square. So an ellipse takes few texels, in
+//! runs that lie in a few rows.
 
 use super::sums::WideSums;
 use crate::footprint::levels::{DISC_VARIANCE, for_lines};
@@ -12,8 +14,8 @@ use crate::settings::Ewa;
 use crate::simd::{LineLanes, PixelLanes, i32x8, lanes, line_indices, mask};
 use crate::texture::{APRON, RowStarts, Rows, Surface, Texel};
 
-/// The disc's Gaussian seen from the side: its integral along lines at a distance t from the middle, over that at t = 0, is
-/// about `z (c0 + c1 z + c2 z^2)` with `z = 1 - t^2`, off by 0.02.
+/// The disc's Gaussian seen from the side: its integral along lines at a distance t from the
+/// middle, over that at t = 0, is about `z (c0 + c1 z + c2 z^2)` with `z = 1 - t^2`, off by 0.02.
 const PROFILE: [f32; 3] = [0.740_760_27, -0.603_611_7, 0.863_908_9];
 
 /// The profile's half length in standard deviations.
@@ -22,21 +24,24 @@ const HALF_LENGTH: f32 = 1.0 / 0.412_934_7;
 /// Least variance along the line, in square texels: that of interpolation.
 const LEAST_VARIANCE: f32 = 1.0 / 6.0;
 
-/// Texel coordinates are clamped to so far from the pattern's first: beyond, an f32 cannot tell neighbours apart, and they
-/// and some beyond fit an i32.
+/// Texel coordinates are clamped to so far from the pattern's first: beyond, an f32 cannot tell
+/// neighbours apart, and they and some beyond fit an i32.
 const FARTHEST: f32 = (1 << 29) as f32;
 
-/// Texel budgets that lines tell apart: fewer than the first leave no line, more than the last nothing to gain.
+/// Texel budgets that lines tell apart: fewer than the first leave no line, more than the last
+/// nothing to gain.
 const LEAST_BUDGET: f32 = 16.0;
 const MOST_BUDGET: f32 = 4096.0;
 
-/// Columns of a line for each texel of the budget: two or three rows of texels are read for each column.
+/// Columns of a line for each texel of the budget: two or three rows of texels are read for each
+/// column.
 const COLUMNS_PER_TEXEL: f32 = 0.4;
 
 /// Columns that are read at once.
 const COLUMNS: usize = 16;
 
-/// The longer axes of eight pixels' ellipses, each in the texels of its level, with rows along v where it is steep.
+/// The longer axes of eight pixels' ellipses, each in the texels of its level, with rows along v
+/// where it is steep.
 #[derive(Clone, Copy, Debug)]
 pub struct LongAxes {
     level: i32x8,
@@ -59,9 +64,11 @@ pub struct LongAxes {
 impl LongAxes {
     /// For pixels around their hits.
     pub fn new(surface: &Surface, pixels: &Footprints, ewa: &Ewa) -> Self {
-        let ellipses = Ellipses::new(pixels, surface.base().texels_per_repeat(), ewa.max_anisotropy);
+        let ellipses =
+            Ellipses::new(pixels, surface.base().texels_per_repeat(), ewa.max_anisotropy);
         // Two or three rows of a line's columns are within the budget.
-        let most = (ewa.texel_budget as f32).clamp(LEAST_BUDGET, MOST_BUDGET) * (COLUMNS_PER_TEXEL * 0.5 / HALF_LENGTH);
+        let most = (ewa.texel_budget as f32).clamp(LEAST_BUDGET, MOST_BUDGET)
+            * (COLUMNS_PER_TEXEL * 0.5 / HALF_LENGTH);
         let along = ellipses.long * DISC_VARIANCE + 0.25;
         let level = for_lines(&ellipses, most, surface.last_level());
         // Square texels of the level in one of the base level.
@@ -81,8 +88,9 @@ impl LongAxes {
         // Rows meet a slanted line aslant.
         let width = (across * (slope * slope + 1.0) * 6.0).fast_max(PixelLanes::ONE).sqrt();
         let texels = texels_a_repeat(surface, level);
-        let bounded =
-            |place: PixelLanes| place.fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST));
+        let bounded = |place: PixelLanes| {
+            place.fast_max(PixelLanes::splat(-FARTHEST)).fast_min(PixelLanes::splat(FARTHEST))
+        };
         let place = [0, 1].map(|i| bounded(pixels.hit[i] * texels[i] - 0.5));
         let place = [is_turned.select(place[1], place[0]), is_turned.select(place[0], place[1])];
         let reach = reach.fast_max(PixelLanes::ONE);
@@ -104,13 +112,15 @@ impl LongAxes {
         self.level.as_array()[lane] as usize
     }
 
-    /// The mean of a pixel, and how many texels were read. Only surfaces that have normals may be asked for them.
+    /// The mean of a pixel, and how many texels were read. Only surfaces that have normals may be
+    /// asked for them.
     #[inline(always)]
     pub fn mean<const HAS_NORMALS: bool>(&self, surface: &Surface, lane: usize) -> (Texel, u64) {
         let is_turned = self.is_turned.as_array()[lane] != 0;
         let rows = surface.levels()[self.level(lane)].rows(is_turned);
         let at = |lanes: &PixelLanes| lanes.as_array()[lane];
-        let [y0, slope, start, width] = [&self.place[1], &self.slope, &self.start, &self.width].map(at);
+        let [y0, slope, start, width] =
+            [&self.place[1], &self.slope, &self.start, &self.width].map(at);
         let inverse_width = LineLanes::splat(1.0 / width);
         let inverse_reach = LineLanes::splat(at(&self.inverse_reach));
         let [first, num] = self.columns.map(|columns| columns.as_array()[lane]);

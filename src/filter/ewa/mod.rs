@@ -1,5 +1,5 @@
-//! Elliptical weighted average (Heckbert 1989): the mean of a set of texels with the weight `exp(-2 r^2)`, a Gaussian
-//! over the disc of radius one pixel, `r^2 = (A U^2 + B U V + C V^2) / F <= 1`.
+//! Elliptical weighted average (Heckbert 1989): the mean of a set of texels with the weight `exp(-2
+//! r^2)`, a Gaussian over the disc of radius one pixel, `r^2 = (A U^2 + B U V + C V^2) / F <= 1`.
 //!
 //! [`mean`] takes all texels of an ellipse, [`LongAxes`] those next to its longer axis.
 
@@ -16,7 +16,8 @@ use crate::footprint::{Footprints, levels};
 use crate::settings::{Ewa, Formulas};
 use crate::texture::Surface;
 
-/// Pairs whose axes are found before their texels are read: a pair's steps wait for each other, those of several do not.
+/// Pairs whose axes are found before their texels are read: a pair's steps wait for each other,
+/// those of several do not.
 const AXES_AT_ONCE: usize = 4;
 
 /// The means of a batch's pixels.

@@ -1,6 +1,8 @@
 //! Weighted sums of texels, texels in lanes.
 
-use crate::simd::{LineLanes, halves, high_halves, join, join_words, low_halves, split, sums, u32x16};
+use crate::simd::{
+    LineLanes, halves, high_halves, join, join_words, low_halves, split, sums, u32x16,
+};
 use crate::texture::{Rows, Texel, unpack_normals};
 
 /// Sixteen texels at a time: of a row, or eight of each of two.
@@ -24,7 +26,8 @@ impl<const HAS_NORMALS: bool> WideSums<HAS_NORMALS> {
     /// Adds eight texels of each of two rows.
     #[inline(always)]
     pub(super) fn add_runs(&mut self, rows: &Rows, starts: [usize; 2], weight: LineLanes) {
-        let run = |plane: usize, start: usize| Rows::run(rows.words(), start + plane * rows.stride());
+        let run =
+            |plane: usize, start: usize| Rows::run(rows.words(), start + plane * rows.stride());
         self.add(|plane| join_words([run(plane, starts[0]), run(plane, starts[1])]), weight);
     }
 

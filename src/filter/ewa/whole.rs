@@ -6,7 +6,9 @@ use crate::filter::points;
 use crate::footprint::levels::for_gaussian;
 use crate::footprint::{Ellipse, Footprint};
 use crate::settings::Ewa;
-use crate::simd::{LineLanes, from_words, join, join_words, lane_columns, line_indices, pick, u32x8, u32x16, words};
+use crate::simd::{
+    LineLanes, from_words, join, join_words, lane_columns, line_indices, pick, u32x8, u32x16, words,
+};
 use crate::texture::{APRON, Rows, Surface, Texel};
 
 /// Texel coordinates are clamped to so far from the pattern's first, so that neighbours fit an i32.
@@ -15,18 +17,26 @@ const FARTHEST: f32 = (1 << 30) as f32;
 /// Rows whose places are found at once.
 const ROWS: usize = 16;
 
-/// The mean of all texels of the ellipse, and how many were in the batches that were read: one pass over the rows of the
-/// coarsest level on which the Gaussian is sampled well, or of the base level where `texel_budget` is 0. The normal is left
-/// out where it is not asked for.
-pub fn mean(surface: &Surface, footprint: &Footprint, ewa: &Ewa, with_normal: bool) -> (Texel, u64) {
+/// The mean of all texels of the ellipse, and how many were in the batches that were read: one pass
+/// over the rows of the coarsest level on which the Gaussian is sampled well, or of the base level
+/// where `texel_budget` is 0. The normal is left out where it is not asked for.
+pub fn mean(
+    surface: &Surface,
+    footprint: &Footprint,
+    ewa: &Ewa,
+    with_normal: bool,
+) -> (Texel, u64) {
     let (index, ellipse) = for_gaussian(surface, footprint, ewa);
     let level = &surface.levels()[index];
     let [x, y] = level.in_texels(footprint.hit).map(|c| c - 0.5);
     // Rows along the longer side: fewer of them.
     let is_turned = ellipse.a > ellipse.c;
     let rows = level.rows(is_turned);
-    let (ellipse, place) =
-        if is_turned { (Ellipse { a: ellipse.c, c: ellipse.a, ..ellipse }, [y, x]) } else { (ellipse, [x, y]) };
+    let (ellipse, place) = if is_turned {
+        (Ellipse { a: ellipse.c, c: ellipse.a, ..ellipse }, [y, x])
+    } else {
+        (ellipse, [x, y])
+    };
     let (mean, num_read) = match (with_normal && level.has_normals(), ewa.cut > 1.0) {
         (false, false) => scan::<false, false>(rows, &ellipse, place, 1.0),
         (false, true) => scan::<false, true>(rows, &ellipse, place, ewa.cut),
@@ -36,7 +46,8 @@ pub fn mean(surface: &Surface, footprint: &Footprint, ewa: &Ewa, with_normal: bo
     (mean.unwrap_or_else(|| points::bilinear(level, footprint.hit)), num_read)
 }
 
-/// The mean over the ellipse around `place`, texel centres at whole numbers, cut at radius `cut`; `None` if it holds none.
+/// The mean over the ellipse around `place`, texel centres at whole numbers, cut at radius `cut`;
+/// `None` if it holds none.
 #[inline(always)]
 fn scan<const HAS_NORMALS: bool, const IS_WIDE: bool>(
     texels: &Rows,
@@ -53,7 +64,8 @@ fn scan<const HAS_NORMALS: bool, const IS_WIDE: bool>(
     if !(half_width.max(half_height) < 1e6 && f > 0.0) {
         return (None, 0);
     }
-    // Rows of equal length, so that no branch depends on a row, and two rows at a time: what lies outside weighs nothing.
+    // Rows of equal length, so that no branch depends on a row, and two rows at a time: what lies
+    // outside weighs nothing.
     let num = (half_width * 0.25) as i32 + 1;
     let num_rows = 2 * (half_height as i32 + 1);
     let first = (y0 - half_height).clamp(-FARTHEST, FARTHEST).ceil() as i32;

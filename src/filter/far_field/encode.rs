@@ -25,7 +25,8 @@ impl FarImage {
         (width + APRON) * height
     }
 
-    /// An image and its coarser levels from linear colours (0 to 1 of the surface's scale), row by row.
+    /// An image and its coarser levels from linear colours (0 to 1 of the surface's scale), row by
+    /// row.
     pub(super) fn new(size: [usize; 2], colors: Vec<[f32; 3]>) -> Self {
         let (mut size, mut colors) = (size, colors);
         let mut levels = Vec::new();
@@ -60,20 +61,28 @@ impl FarLevel {
 
 fn encode(color: [f32; 3]) -> u32 {
     let [r, g, b] = color.map(|c| c.clamp(0.0, 1.0).sqrt());
-    (r * 2047.0 + 0.5) as u32 | ((g * 2047.0 + 0.5) as u32) << 11 | ((b * 1023.0 + 0.5) as u32) << 22
+    (r * 2047.0 + 0.5) as u32
+        | ((g * 2047.0 + 0.5) as u32) << 11
+        | ((b * 1023.0 + 0.5) as u32) << 22
 }
 
-/// Eight texels as linear red, green and blue, in units of 1/2047^2 and 1/1023^2 of the surface's scale.
+/// Eight texels as linear red, green and blue, in units of 1/2047^2 and 1/1023^2 of the surface's
+/// scale.
 pub(super) fn decode(words: u32x8) -> [TexelLanes; 3] {
     let part = |bits: u32x8| {
         let root = TexelLanes::from_i32x8(as_signed(bits));
         root * root
     };
-    [part(words & u32x8::splat(2047)), part(words >> 11_u32 & u32x8::splat(2047)), part(words >> 22_u32)]
+    [
+        part(words & u32x8::splat(2047)),
+        part(words >> 11_u32 & u32x8::splat(2047)),
+        part(words >> 22_u32),
+    ]
 }
 
 /// What a decoded 1 stands for, by channel.
-pub(super) const UNITS: [f32; 3] = [1.0 / (2047.0 * 2047.0), 1.0 / (2047.0 * 2047.0), 1.0 / (1023.0 * 1023.0)];
+pub(super) const UNITS: [f32; 3] =
+    [1.0 / (2047.0 * 2047.0), 1.0 / (2047.0 * 2047.0), 1.0 / (1023.0 * 1023.0)];
 
 /// Half the size, each texel the mean of the area that it covers.
 fn halve([w, h]: [usize; 2], colors: &[[f32; 3]]) -> ([usize; 2], Vec<[f32; 3]>) {

@@ -8,15 +8,16 @@ use crate::footprint::{Ellipse, Ellipses, Footprint, Footprints, RowQuadric};
 use crate::simd::{PixelLanes, TexelLanes, exp_negative, lane_columns, sum, u32x8};
 use crate::texture::{FULL_F32, Surface, Texel};
 
-/// Texels of the finest table across a footprint where the tables begin to count, where sweeps lose nothing by their levels
-/// and where they do.
+/// Texels of the finest table across a footprint where the tables begin to count, where sweeps lose
+/// nothing by their levels and where they do.
 const HAND_OVER: [f32; 2] = [4.5, 3.0];
 
 /// Times as many where nothing but the tables counts.
 const HAND_OVER_END: f32 = 4.0 / 3.0;
 
 impl FarField {
-    /// How much of the colour of eight pixels the tables give, 0 to 1: all of it where a footprint is large.
+    /// How much of the colour of eight pixels the tables give, 0 to 1: all of it where a footprint
+    /// is large.
     pub(in crate::filter) fn shares(
         &self,
         prepared: &Prepared,
@@ -32,8 +33,9 @@ impl FarField {
         let [du, dv] = pixels.displacement.map(PixelLanes::to_array);
         let start = std::array::from_fn(|i| {
             // Where levels lose occlusion, sweeps do: the tables begin earlier.
-            let loss =
-                prepared.level_loss().map_or(0.0, |loss| loss.share(surface, surface.base().in_texels([du[i], dv[i]])));
+            let loss = prepared
+                .level_loss()
+                .map_or(0.0, |loss| loss.share(surface, surface.base().in_texels([du[i], dv[i]])));
             HAND_OVER[0] + (HAND_OVER[1] - HAND_OVER[0]) * loss
         });
         let start = PixelLanes::new(start);
@@ -42,7 +44,12 @@ impl FarField {
     }
 
     /// The mean of what is seen in a footprint around its base place.
-    pub(in crate::filter) fn mean(&self, surface: &Surface, footprint: &Footprint, max_anisotropy: f32) -> Texel {
+    pub(in crate::filter) fn mean(
+        &self,
+        surface: &Surface,
+        footprint: &Footprint,
+        max_anisotropy: f32,
+    ) -> Texel {
         let Footprint { base, displacement, .. } = *footprint;
         let (index, ellipse) = for_tables(surface, self.first_level, footprint, max_anisotropy);
         let place = [0, 1].map(|i| base[i] + displacement[i] * self.mean_depth);
@@ -54,8 +61,14 @@ impl FarField {
     }
 }
 
-/// The Gaussian mean over the ellipse around `place` (texel centres at whole numbers) of four images by their shares.
-fn average(images: &[(&FarImage, f32); 4], level: usize, ellipse: &Ellipse, place: [f32; 2]) -> [f32; 3] {
+/// The Gaussian mean over the ellipse around `place` (texel centres at whole numbers) of four
+/// images by their shares.
+fn average(
+    images: &[(&FarImage, f32); 4],
+    level: usize,
+    ellipse: &Ellipse,
+    place: [f32; 2],
+) -> [f32; 3] {
     let width = images[0].0.width(level);
     let half_height = ellipse.half_height();
     let (mut weights, mut colors) = (TexelLanes::ZERO, [TexelLanes::ZERO; 3]);

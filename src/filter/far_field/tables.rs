@@ -1,24 +1,28 @@
 //! The tables of one surface: for which directions there are any, and how they are built.
 
 use super::encode::FarImage;
-use crate::relief::directions::{Lengths, NUM_LENGTHS, SLOPES, diamond_angle, pseudo_exp, pseudo_log};
+use crate::relief::directions::{
+    Lengths, NUM_LENGTHS, SLOPES, diamond_angle, pseudo_exp, pseudo_log,
+};
 use crate::relief::seen::{Seen, seen_image, square_difference};
 use crate::texture::{Surface, Wrap};
 use rayon::prelude::*;
 
-/// Texels of a table's finest level at the most: the larger the maps, the coarser the level that tables begin on.
+/// Texels of a table's finest level at the most: the larger the maps, the coarser the level that
+/// tables begin on.
 const MOST_TEXELS: usize = 128 * 128;
 
-/// Fewest and most azimuths of a length, and most tables: more cost more time to build than they gain.
+/// Fewest and most azimuths of a length, and most tables: more cost more time to build than they
+/// gain.
 const AZIMUTHS: [usize; 2] = [16, 72];
 const MOST_TABLES: usize = 400;
 
-/// Greatest root-mean-square difference, of the surface's colour scale, that the level that tables are built from may make
-/// in what is seen. Measured: see [`LevelLoss`](crate::relief::LevelLoss).
+/// Greatest root-mean-square difference, of the surface's colour scale, that the level that tables
+/// are built from may make in what is seen. Measured: see [`LevelLoss`](crate::relief::LevelLoss).
 const MOST_SOURCE_LOSS: f32 = 0.02;
 
-/// Lengths and azimuths, by their numbers, in which that difference is looked for: gentle, middle and grazing; along u, and
-/// one that lies along no axis.
+/// Lengths and azimuths, by their numbers, in which that difference is looked for: gentle, middle
+/// and grazing; along u, and one that lies along no axis.
 const PROBED_LENGTHS: [usize; 3] = [2, NUM_LENGTHS / 2, NUM_LENGTHS - 2];
 const PROBED_AZIMUTHS: [usize; 2] = [0, 3];
 
@@ -37,11 +41,12 @@ pub(in crate::filter) struct FarField {
 }
 
 impl FarField {
-    /// Builds the tables within so many MiB; `None` for a surface without relief, with edges that do not repeat, or too small
-    /// to need tables.
+    /// Builds the tables within so many MiB; `None` for a surface without relief, with edges that
+    /// do not repeat, or too small to need tables.
     pub(in crate::filter) fn new(surface: &Surface, mib: u32) -> Option<Self> {
         let num_texels = |level: &usize| surface.levels()[*level].size().iter().product::<usize>();
-        let first_level = (0..surface.levels().len()).find(|level| num_texels(level) <= MOST_TEXELS)?;
+        let first_level =
+            (0..surface.levels().len()).find(|level| num_texels(level) <= MOST_TEXELS)?;
         if surface.relief_depth() == 0.0 || surface.wrap() == Wrap::Clamp || first_level == 0 {
             return None;
         }
@@ -60,20 +65,28 @@ impl FarField {
     fn build(&self, surface: &Surface) -> Vec<FarImage> {
         let size = surface.levels()[self.first_level].size();
         let source = self.source_level(surface);
-        let directions = (0..NUM_LENGTHS).flat_map(|i| (0..self.num_azimuths(i)).map(move |j| (i, j)));
+        let directions =
+            (0..NUM_LENGTHS).flat_map(|i| (0..self.num_azimuths(i)).map(move |j| (i, j)));
         let directions: Vec<_> = directions.collect();
-        let one =
-            |(i, j)| FarImage::new(size, seen_image(surface, Seen::Colors, source, size, self.displacement(i, j)));
+        let one = |(i, j)| {
+            FarImage::new(
+                size,
+                seen_image(surface, Seen::Colors, source, size, self.displacement(i, j)),
+            )
+        };
         directions.into_par_iter().map(one).collect()
     }
 
-    /// The coarsest level, up to 1, whose sweep shows nearly what the base level's does: a quarter of the work.
+    /// The coarsest level, up to 1, whose sweep shows nearly what the base level's does: a quarter
+    /// of the work.
     fn source_level(&self, surface: &Surface) -> usize {
         let size = surface.levels()[self.first_level].size();
-        let probes: Vec<_> = PROBED_LENGTHS.into_iter().flat_map(|i| PROBED_AZIMUTHS.map(|j| (i, j))).collect();
+        let probes: Vec<_> =
+            PROBED_LENGTHS.into_iter().flat_map(|i| PROBED_AZIMUTHS.map(|j| (i, j))).collect();
         let loss = |&(i, j): &(usize, usize)| {
-            let [exact, coarse] =
-                [0, 1].map(|level| seen_image(surface, Seen::Colors, level, size, self.displacement(i, j)));
+            let [exact, coarse] = [0, 1].map(|level| {
+                seen_image(surface, Seen::Colors, level, size, self.displacement(i, j))
+            });
             square_difference(&exact, &coarse)
         };
         let greatest = probes.par_iter().map(loss).reduce(|| 0.0, f32::max);
@@ -95,7 +108,12 @@ impl FarField {
         let near = (length as usize).min(NUM_LENGTHS - 2);
         let along = length - near as f32;
         let ([a, b], [c, d]) = (self.pair(near, displacement), self.pair(near + 1, displacement));
-        [(a.0, a.1 * (1.0 - along)), (b.0, b.1 * (1.0 - along)), (c.0, c.1 * along), (d.0, d.1 * along)]
+        [
+            (a.0, a.1 * (1.0 - along)),
+            (b.0, b.1 * (1.0 - along)),
+            (c.0, c.1 * along),
+            (d.0, d.1 * along),
+        ]
     }
 
     /// The two nearest tables of a length and their shares.
@@ -107,16 +125,20 @@ impl FarField {
     }
 }
 
-/// Where each length's tables begin: as many azimuths as the memory allows, in proportion to the length, since an error
-/// in azimuth moves what lies above or below the mean depth by that much across the view.
+/// Where each length's tables begin: as many azimuths as the memory allows, in proportion to the
+/// length, since an error in azimuth moves what lies above or below the mean depth by that much
+/// across the view.
 fn table_starts(surface: &Surface, first_level: usize, mib: u32) -> Vec<usize> {
-    let words: usize = surface.levels()[first_level..].iter().map(|level| FarImage::num_words(level.size())).sum();
+    let words: usize =
+        surface.levels()[first_level..].iter().map(|level| FarImage::num_words(level.size())).sum();
     let num = (mib as usize * (1 << 20) / (words * 4)).min(MOST_TABLES);
     let growth = pseudo_log(SLOPES[1] / SLOPES[0]);
     let azimuths = |scale: f32| {
         let ratio = |length: usize| pseudo_exp(growth * (length as f32 / (NUM_LENGTHS - 1) as f32));
         let wanted = |length: usize| (ratio(length) * scale) as usize / 4 * 4;
-        (0..NUM_LENGTHS).map(|length| wanted(length).clamp(AZIMUTHS[0], AZIMUTHS[1])).collect::<Vec<_>>()
+        (0..NUM_LENGTHS)
+            .map(|length| wanted(length).clamp(AZIMUTHS[0], AZIMUTHS[1]))
+            .collect::<Vec<_>>()
     };
     // The greatest of these scales that fits: azimuths are whole, so there is nothing to solve for.
     let scales = (0..400).map(|i| 0.05 * i as f32).rev();

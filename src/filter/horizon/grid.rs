@@ -42,23 +42,27 @@ pub(super) struct Grid<'a> {
     pub(super) num_bins: usize,
 }
 
-/// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then normal.
+/// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then
+/// normal.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Profile<const CHANNELS: usize> {
     pub(super) bins: Vec<[Row; CHANNELS]>,
 }
 
 impl Grid<'_> {
-    /// The seen places that the pixels ask of each group of lines: first and last; the first is greater where none
-    /// asks.
+    /// The seen places that the pixels ask of each group of lines: first and last; the first is
+    /// greater where none asks.
     pub(super) fn ranges(&self, kernels: &[PixelOnLines]) -> [[f32; 2]; MOST_LINES / GROUP] {
         let mut ranges = [[f32::MAX, f32::MIN]; MOST_LINES / GROUP];
         let inverse = 1.0 / (GROUP as f32 * self.spacing);
         for kernel in kernels {
             let PixelOnLines { xi, q, half_width, half_height, .. } = *kernel;
-            let [from, to] = [xi - half_width, xi + half_width].map(|xi| (xi - self.first) * inverse);
+            let [from, to] =
+                [xi - half_width, xi + half_width].map(|xi| (xi - self.first) * inverse);
             let last = to.min((self.num_lines - 1) as f32 * (1.0 / GROUP as f32));
-            for range in ranges.iter_mut().take((last + 1.0).max(0.0) as usize).skip(from.max(0.0) as usize) {
+            for range in
+                ranges.iter_mut().take((last + 1.0).max(0.0) as usize).skip(from.max(0.0) as usize)
+            {
                 *range = [range[0].min(q - half_height), range[1].max(q + half_height)];
             }
         }

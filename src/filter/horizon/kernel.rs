@@ -7,8 +7,8 @@ use crate::simd::{PixelLanes, TexelLanes, exp_negative, lane_indices, sums};
 use crate::texture::Texel;
 use glam::Vec3;
 
-/// `G(z)`, the integral of `exp(-2 z^2)` from 0, for z within -1 to 1: the integral of the even polynomial of degree 8
-/// that is nearest to the kernel, off by at most 0.0002.
+/// `G(z)`, the integral of `exp(-2 z^2)` from 0, for z within -1 to 1: the integral of the even
+/// polynomial of degree 8 that is nearest to the kernel, off by at most 0.0002.
 fn integral(z: TexelLanes) -> TexelLanes {
     let s = z * z;
     ((((s * 0.028_880_1 - 0.148_824_7) * s + 0.381_363_6) * s - 0.663_076_2) * s + 0.999_799) * z
@@ -37,11 +37,12 @@ impl Totals {
         let inverse = 1.0 / grid.spacing;
         let from = (kernel.xi - kernel.half_width - grid.first) * inverse;
         let to = (kernel.xi + kernel.half_width - grid.first) * inverse;
-        let lines =
-            (from.floor() as i32 + 1).max(0) as usize..(to.ceil() as i32).clamp(0, grid.num_lines as i32) as usize;
+        let lines = (from.floor() as i32 + 1).max(0) as usize
+            ..(to.ceil() as i32).clamp(0, grid.num_lines as i32) as usize;
         let bin_at = |place: f32| (place - grid.begin) / grid.step;
         let from = bin_at(kernel.q - kernel.half_height).max(0.0) as usize;
-        let to = (bin_at(kernel.q + kernel.half_height).ceil().max(0.0) as usize).min(grid.num_bins);
+        let to =
+            (bin_at(kernel.q + kernel.half_height).ceil().max(0.0) as usize).min(grid.num_bins);
         let bins = from.min(to)..to;
         for line in lines.step_by(8) {
             self.add_lines(&profile.bins[bins.clone()], grid, kernel, [line, from], lights);
@@ -61,7 +62,8 @@ impl Totals {
         let xi = (lane_indices() + line as f32) * grid.spacing + (grid.first - kernel.xi);
         // Lines of the next grid count there.
         let is_here = lane_indices().simd_lt(TexelLanes::splat((grid.num_lines - line) as f32));
-        let outside = is_here.select((xi * xi * kernel.across).fast_min(TexelLanes::ONE), TexelLanes::ONE);
+        let outside =
+            is_here.select((xi * xi * kernel.across).fast_min(TexelLanes::ONE), TexelLanes::ONE);
         let middle = TexelLanes::splat(kernel.q) - xi * kernel.skew;
         let half = (TexelLanes::ONE - outside).sqrt() * (1.0 / kernel.along);
         let [low, high] = [middle - half, middle + half];
@@ -70,7 +72,9 @@ impl Totals {
         let mut sums = [TexelLanes::ZERO; CHANNELS];
         for (i, bin) in bins.iter().enumerate() {
             let end = grid.begin + (first_bin + i + 1) as f32 * grid.step;
-            let weight = integral((low.fast_max(high.fast_min(TexelLanes::splat(end))) - middle) * kernel.along);
+            let weight = integral(
+                (low.fast_max(high.fast_min(TexelLanes::splat(end))) - middle) * kernel.along,
+            );
             let visible = weight - last_weight;
             if let (Some(lights), true) = (lights, CHANNELS > 3) {
                 let normal = [3, 4, 5].map(|i| load(&bin[i.min(CHANNELS - 1)], line));
@@ -88,7 +92,8 @@ impl Totals {
         (3..CHANNELS).for_each(|i| self.normal[i - 3] += sums[i] * share);
     }
 
-    /// The mean; `None` where no more was added than the rounding of [`integral`]'s differences makes.
+    /// The mean; `None` where no more was added than the rounding of [`integral`]'s differences
+    /// makes.
     pub(super) fn mean(&self, is_lit: bool) -> Option<Texel> {
         let sums_of = |[x, y, z]: [TexelLanes; 3]| {
             let [weight, x, y, z] = sums([self.weight, x, y, z]);

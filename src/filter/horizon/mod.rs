@@ -1,23 +1,26 @@
 //! The floating horizon filter: the visible relief of a footprint in one sweep.
 //!
-//! A texel at `t` and depth `d` is seen over the base coordinate `t - d D`, with the displacement `D` down to the deepest
-//! relief. Along a line in the direction of `D`, walked from its near end, the eye sees the part of the relief where the
-//! projected place makes a new record, and nothing else. So with the places `p_i` of the line's texels:
+//! A texel at `t` and depth `d` is seen over the base coordinate `t - d D`, with the displacement
+//! `D` down to the deepest relief. Along a line in the direction of `D`, walked from its near end,
+//! the eye sees the part of the relief where the projected place makes a new record, and nothing
+//! else. So with the places `p_i` of the line's texels:
 //!
 //! ```text
 //! M = entry of the line into the ellipse of formula (2)
 //! for each texel i:  w_i = G(min(p_i, exit)) - G(M) if that is positive;  M = max(M, p_i);  stop when M >= exit
 //! ```
 //!
-//! where `G` is the integral of the kernel `exp(-2 r^2)` along the line, so the weights of a line sum to its share of the
-//! ellipse whatever the relief. The segment between two texels is linear: its colour is taken at the middle of its
-//! visible part. (The floating horizon: a hidden-surface algorithm for functions of two variables, here run inside a
-//! texture footprint; the weight is exact where the classic algorithm draws lines.)
+//! where `G` is the integral of the kernel `exp(-2 r^2)` along the line, so the weights of a line
+//! sum to its share of the ellipse whatever the relief. The segment between two texels is linear:
+//! its colour is taken at the middle of its visible part. (The floating horizon: a hidden-surface
+//! algorithm for functions of two variables, here run inside a texture footprint; the weight is
+//! exact where the classic algorithm draws lines.)
 //!
-//! Neighbouring pixels see the same texels, so a *patch* of them is swept once (`sweep`): rows across the longer axis of
-//! the displacement, on a transposed copy of the texels where that is u, and sixteen lines as lanes. What a line sees is
-//! kept bin by bin (`walk`), and each pixel weighs the bins by its own Gaussian (`kernel`). `patch` plans which pixels are
-//! swept together, `sweep_frame` how their lines run. What is far comes from tables (`far_field`).
+//! Neighbouring pixels see the same texels, so a *patch* of them is swept once (`sweep`): rows
+//! across the longer axis of the displacement, on a transposed copy of the texels where that is u,
+//! and sixteen lines as lanes. What a line sees is kept bin by bin (`walk`), and each pixel weighs
+//! the bins by its own Gaussian (`kernel`). `patch` plans which pixels are swept together,
+//! `sweep_frame` how their lines run. What is far comes from tables (`far_field`).
 
 mod grid;
 mod kernel;
@@ -42,8 +45,8 @@ const NUM_VECTORS: usize = MOST_PIXELS / 8;
 /// Bins along an ellipse for a kernel that is exact to 1e-4.
 const FINE_BINS: f32 = 256.0;
 
-/// Bins along the shortest ellipse of a patch that serve a picture, for each texel that the settings ask for across: unlit
-/// and lit, where lights are asked for each bin; and the fewest.
+/// Bins along the shortest ellipse of a patch that serve a picture, for each texel that the
+/// settings ask for across: unlit and lit, where lights are asked for each bin; and the fewest.
 const BINS: [f32; 2] = [0.5, 1.6];
 const LEAST_BINS: f32 = 5.0;
 
@@ -88,7 +91,8 @@ pub(super) fn colors(
             for lane in pixels.covered() {
                 let near = if shares[lane] < 1.0 { swept.next() } else { None };
                 let far = far.filter(|_| shares[lane] > 0.0);
-                let far = far.map(|far| far.mean(surface, &pixels.lane(lane), horizon.max_anisotropy));
+                let far =
+                    far.map(|far| far.mean(surface, &pixels.lane(lane), horizon.max_anisotropy));
                 match (near, far) {
                     (Some(near), Some(far)) => out.set(lane, &near.lerp(&far, shares[lane])),
                     (Some(near), None) => out.set(lane, near),
@@ -113,13 +117,18 @@ pub(super) fn levels(
         let HorizonScratch { patch, shares, near, .. } = scratch;
         share_out(prepared, far.as_deref(), pixels, horizon, (shares, near));
         let mut levels = Vec::with_capacity(near.len());
-        patches(prepared, pixels, horizon, picture_bins(horizon, is_lit), is_lit).levels(near, patch, &mut levels);
+        patches(prepared, pixels, horizon, picture_bins(horizon, is_lit), is_lit).levels(
+            near,
+            patch,
+            &mut levels,
+        );
         let mut levels = levels.into_iter();
         all.extend(pixels.iter().zip(shares).map(|(pixels, shares)| {
             let mut choices = [LevelChoice::default(); 8];
             for lane in pixels.covered() {
                 let level = if shares[lane] < 1.0 { levels.next() } else { None };
-                choices[lane] = LevelChoice { level: level.unwrap_or(0), blend: 0.0, far_share: shares[lane] };
+                choices[lane] =
+                    LevelChoice { level: level.unwrap_or(0), blend: 0.0, far_share: shares[lane] };
             }
             choices
         }));
@@ -128,7 +137,11 @@ pub(super) fn levels(
 }
 
 /// The tables, if they are wanted: they hold unlit colour.
-fn far_field(prepared: &Prepared, horizon: &Horizon, is_lit: bool) -> Option<std::sync::Arc<FarField>> {
+fn far_field(
+    prepared: &Prepared,
+    horizon: &Horizon,
+    is_lit: bool,
+) -> Option<std::sync::Arc<FarField>> {
     if is_lit || !horizon.far_field { None } else { prepared.far_field(horizon.far_field_mib) }
 }
 
@@ -145,7 +158,12 @@ fn share_out(
     for (vector, pixels) in pixels.iter().enumerate() {
         let of_far = |far: &FarField| far.shares(prepared, pixels, horizon.max_anisotropy);
         let of_far = far.map_or(PixelLanes::ZERO, of_far).to_array();
-        near.extend(pixels.covered().filter(|lane| of_far[*lane] < 1.0).map(|lane| (8 * vector + lane) as u8));
+        near.extend(
+            pixels
+                .covered()
+                .filter(|lane| of_far[*lane] < 1.0)
+                .map(|lane| (8 * vector + lane) as u8),
+        );
         shares.push(of_far);
     }
 }

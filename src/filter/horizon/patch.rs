@@ -1,7 +1,8 @@
 //! Patches: pixels that are swept together.
 //!
-//! A patch is planned first: its mip level, where its lines run, how they are cut. Pixels that one patch cannot hold well are
-//! split in two, at last into single pixels. What is planned is then swept, or only told to who asks for the levels.
+//! A patch is planned first: its mip level, where its lines run, how they are cut. Pixels that one
+//! patch cannot hold well are split in two, at last into single pixels. What is planned is then
+//! swept, or only told to who asks for the levels.
 
 use super::grid::{Grid, MOST_LINES, Profile};
 use super::kernel::Totals;
@@ -21,18 +22,20 @@ pub(super) const MOST_PIXELS: usize = 256;
 
 const _: () = assert!(MOST_PIXELS <= 1 << u8::BITS, "a pick is a byte");
 
-/// Lines across the widest ellipse of a patch for each texel that the settings ask for, unless that puts them farther apart
-/// than [`WIDEST`]; and the fewest. Fewer lines than texels serve, since a line's colours are interpolated.
+/// Lines across the widest ellipse of a patch for each texel that the settings ask for, unless that
+/// puts them farther apart than [`WIDEST`]; and the fewest. Fewer lines than texels serve, since a
+/// line's colours are interpolated.
 const LINES: [f32; 2] = [0.65, 5.0];
 
-/// Greatest distance between lines in texels: sixteen lines and their neighbours lie within 32 texels, two loads.
+/// Greatest distance between lines in texels: sixteen lines and their neighbours lie within 32
+/// texels, two loads.
 const WIDEST: f32 = 1.99;
 
 /// Most bins of a patch of several pixels: as many as fit the second cache with their 64 lines.
 const MOST_BINS: f32 = 256.0;
 
-/// How much longer the widest ellipse of a patch may be across than the narrowest, squared: the narrowest decides how finely
-/// bins cut, the widest how many lines there are.
+/// How much longer the widest ellipse of a patch may be across than the narrowest, squared: the
+/// narrowest decides how finely bins cut, the widest how many lines there are.
 const MOST_RATIO: f32 = 2.25;
 
 /// Buffers of sweeps, kept between them.
@@ -46,8 +49,8 @@ pub(super) struct PatchScratch {
     totals: Vec<Totals>,
 }
 
-/// Up to [`MOST_PIXELS`] pixels of one surface that may share sweeps. A pick is a pixel's vector times 8 plus its lane; picks
-/// ascend.
+/// Up to [`MOST_PIXELS`] pixels of one surface that may share sweeps. A pick is a pixel's vector
+/// times 8 plus its lane; picks ascend.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patches<'a> {
     pub(super) surface: &'a Surface,
@@ -74,7 +77,8 @@ struct Plan<'a> {
     step: f32,
 }
 
-/// The extent of a patch: least and greatest `xi` and `q` of its ellipses, the greatest width and the least height.
+/// The extent of a patch: least and greatest `xi` and `q` of its ellipses, the greatest width and
+/// the least height.
 #[derive(Clone, Copy, Debug)]
 struct Extent {
     xi: [f32; 2],
@@ -86,8 +90,8 @@ struct Extent {
 }
 
 impl<'a> Patches<'a> {
-    /// The means of the picked pixels into `found`. With `lights`, one a pick, they hold diffuse light. Returns the number of
-    /// rows swept, sixteen lines each.
+    /// The means of the picked pixels into `found`. With `lights`, one a pick, they hold diffuse
+    /// light. Returns the number of rows swept, sixteen lines each.
     pub(super) fn means(
         &self,
         picks: &[u8],
@@ -122,7 +126,8 @@ impl<'a> Patches<'a> {
         self.levels(far, scratch, levels);
     }
 
-    /// Plans the picked pixels as one patch, whose lines are left in the scratch; `None` where they do not fit into one.
+    /// Plans the picked pixels as one patch, whose lines are left in the scratch; `None` where they
+    /// do not fit into one.
     fn plan(&self, picks: &[u8], scratch: &mut PatchScratch) -> Option<Plan<'a>> {
         let PatchScratch { picked, ellipses, pixels: on_lines, .. } = scratch;
         // Picks ascend: only these vectors hold any.
@@ -134,8 +139,13 @@ impl<'a> Patches<'a> {
         let texels = self.surface.levels()[level].texels_per_repeat();
         let blur = blur(level);
         ellipses.clear();
-        ellipses.extend(pixels.iter().map(|p| Ellipses::new(p, texels, self.horizon.max_anisotropy).sharpened(blur)));
-        let [a, c] = [ellipses[0].a, ellipses[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
+        ellipses.extend(
+            pixels
+                .iter()
+                .map(|p| Ellipses::new(p, texels, self.horizon.max_anisotropy).sharpened(blur)),
+        );
+        let [a, c] =
+            [ellipses[0].a, ellipses[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
         let frame = SweepFrame::new(self.surface, level, middle, a < c);
         let frame = if picks.len() > 1 { frame.fit(pixels, ellipses, picked)? } else { frame };
         // Put the pixels on them.
@@ -174,53 +184,74 @@ impl<'a> Patches<'a> {
         let PatchScratch { unlit, lit, pixels, totals, .. } = scratch;
         totals.clear();
         totals.resize(picks.len(), Totals::default());
-        let num_rows =
-            if self.is_lit { plan.run(lit, pixels, lights, totals) } else { plan.run(unlit, pixels, &[], totals) };
+        let num_rows = if self.is_lit {
+            plan.run(lit, pixels, lights, totals)
+        } else {
+            plan.run(unlit, pixels, &[], totals)
+        };
         for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
             let mean = totals.mean(self.is_lit).unwrap_or_else(|| {
                 let pixel = self.pixels[usize::from(pick / 8)].lane(usize::from(pick % 8));
                 points::bilinear(&self.surface.levels()[plan.level], pixel.base)
             });
-            // Written one f32 at a time: a vector store followed by scalar loads would stall store forwarding.
+            // Written one f32 at a time: a vector store followed by scalar loads would stall store
+            // forwarding.
             (found.color, found.normal) = (mean.color, mean.normal);
         }
         num_rows
     }
 
-    /// The level of a patch, by the geometric mean of the widest and the narrowest footprint; and the means of places and
-    /// displacements. `None` where footprints differ too much.
-    fn choose_level(&self, pixels: &[Footprints], picked: &[PixelLanes], num: usize) -> Option<(usize, [[f32; 2]; 2])> {
+    /// The level of a patch, by the geometric mean of the widest and the narrowest footprint; and
+    /// the means of places and displacements. `None` where footprints differ too much.
+    fn choose_level(
+        &self,
+        pixels: &[Footprints],
+        picked: &[PixelLanes],
+        num: usize,
+    ) -> Option<(usize, [[f32; 2]; 2])> {
         let base = self.surface.base();
         let means = means(pixels, picked, num);
         let [du, dv] = base.in_texels(means[1]);
         let (mut least, mut most, mut long) = (f32::MAX, 0.0_f32, 0.0_f32);
         for (pixels, picked) in pixels.iter().zip(picked) {
-            let ellipses = Ellipses::new(pixels, base.texels_per_repeat(), self.horizon.max_anisotropy);
-            let greatest = |lanes: PixelLanes| (lanes & *picked).to_array().into_iter().fold(0.0, f32::max);
+            let ellipses =
+                Ellipses::new(pixels, base.texels_per_repeat(), self.horizon.max_anisotropy);
+            let greatest =
+                |lanes: PixelLanes| (lanes & *picked).to_array().into_iter().fold(0.0, f32::max);
             let far = PixelLanes::splat(f32::MAX) & !*picked;
-            least = least.min((ellipses.short & *picked).fast_max(far).to_array().into_iter().fold(f32::MAX, f32::min));
+            least = least.min(
+                (ellipses.short & *picked)
+                    .fast_max(far)
+                    .to_array()
+                    .into_iter()
+                    .fold(f32::MAX, f32::min),
+            );
             (most, long) = (most.max(greatest(ellipses.short)), long.max(greatest(ellipses.long)));
         }
         if most > MOST_RATIO * least {
             return None;
         }
         let across = 2.0 * (most * least).sqrt().sqrt();
-        let extent = SweepExtent { across, along: 2.0 * long.sqrt(), depth: du.abs().max(dv.abs()) };
-        let finer_by = |bias: usize| for_sweep(self.surface, &extent, (self.horizon.lines << bias) as f32);
+        let extent =
+            SweepExtent { across, along: 2.0 * long.sqrt(), depth: du.abs().max(dv.abs()) };
+        let finer_by =
+            |bias: usize| for_sweep(self.surface, &extent, (self.horizon.lines << bias) as f32);
         let level = finer_by(0);
         let bias = match self.loss {
             // Nothing is finer than the base level.
             Some(loss) if level > 0 => loss.bias(self.surface, [du, dv]),
             Some(_) => 0,
-            // Under lights no table helps where a level loses what hides behind fine ridges: one level finer instead.
+            // Under lights no table helps where a level loses what hides behind fine ridges: one
+            // level finer instead.
             None => usize::from(self.is_lit),
         };
         Some((if bias == 0 { level } else { finer_by(bias) }, means))
     }
 }
 
-/// Four times the variance, in square texels of a level, by which its texels are wider than those of the base level: each is
-/// the mean of a square, variance 1/12, and they are interpolated, variance 1/6.
+/// Four times the variance, in square texels of a level, by which its texels are wider than those
+/// of the base level: each is the mean of a square, variance 1/12, and they are interpolated,
+/// variance 1/6.
 fn blur(level: usize) -> f32 {
     1.0 - 0.25_f32.powi(level as i32)
 }

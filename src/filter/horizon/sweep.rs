@@ -1,19 +1,23 @@
 //! The sweep: what is seen along each line of a patch, bin by bin.
 //!
-//! Bins cut the seen places into equal parts. Sixteen lines at a time read their texels row by row, from the near end to the
-//! far one; what is seen of them, and so the mean of each bin, is found in [`walk`](super::walk).
+//! Bins cut the seen places into equal parts. Sixteen lines at a time read their texels row by row,
+//! from the near end to the far one; what is seen of them, and so the mean of each bin, is found in
+//! [`walk`](super::walk).
 
 use super::grid::{EMPTY_ROW, GROUP, Grid, Profile, Texels};
 use super::sweep_frame::SweepFrame;
 use super::walk::Walk;
-use crate::simd::{LineBlend, LineLanes, halves, high_halves, join, line_indices, low_halves, pick_words};
+use crate::simd::{
+    LineBlend, LineLanes, halves, high_halves, join, line_indices, low_halves, pick_words,
+};
 use crate::texture::{FULL_F32, unpack_normals};
 
 /// Most rows that are read before what they show is looked at.
 const READ_AHEAD: usize = 32;
 
 impl<const CHANNELS: usize> Profile<CHANNELS> {
-    /// Sweeps the lines of a group over the bins between two seen places. Returns the number of rows.
+    /// Sweeps the lines of a group over the bins between two seen places. Returns the number of
+    /// rows.
     pub(super) fn sweep(&mut self, grid: &Grid, group: usize, [entry, exit]: [f32; 2]) -> u64 {
         if self.bins.len() < grid.num_bins {
             self.bins.resize(grid.num_bins, [EMPTY_ROW; CHANNELS]);
@@ -29,8 +33,9 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let end_row = first_row + lines.rows_between(start, end);
         let mut last = lines.texels::<CHANNELS>(first_row, lines.start_of(first_row));
         let mut row = first_row + 1;
-        // Read rows ahead, so that no branch on what they show waits for memory. A texel is never seen beyond its own row, so
-        // the first `end - start` rows cannot reach the exit: they are read in one block.
+        // Read rows ahead, so that no branch on what they show waits for memory. A texel is never
+        // seen beyond its own row, so the first `end - start` rows cannot reach the exit: they are
+        // read in one block.
         let mut read = [last; READ_AHEAD];
         let mut num_read = ((end - start) as usize).clamp(1, READ_AHEAD);
         while !walk.is_done() && row < end_row {
@@ -101,8 +106,8 @@ impl<'a> Lines<'a> {
     fn read<const CHANNELS: usize>(&self, first: i32, read: &mut [Texels<CHANNELS>]) {
         let mut starts = [0; READ_AHEAD];
         let (words, stride) = (self.frame.rows.words(), self.frame.rows.stride());
-        // Touch one word of each plane first, so that cache misses of many rows overlap: the work on a row is too long for the
-        // processor to look ahead.
+        // Touch one word of each plane first, so that cache misses of many rows overlap: the work
+        // on a row is too long for the processor to look ahead.
         let mut touched = 0;
         for (start, row) in starts[..read.len()].iter_mut().zip(first..) {
             *start = self.start_of(row);
@@ -119,7 +124,8 @@ impl<'a> Lines<'a> {
     fn columns(&self, row: i32) -> LineLanes {
         let SweepFrame { origin, shear, spread, .. } = *self.frame;
         let q = row as f32 - self.middle;
-        // Rows that are read ahead may lie where lines would run together, or farther apart than a run of texels reaches.
+        // Rows that are read ahead may lie where lines would run together, or farther apart than a
+        // run of texels reaches.
         self.xi * (spread * q + 1.0).clamp(0.0, self.most_scale) + (origin[0] + shear * q)
     }
 
@@ -157,7 +163,9 @@ impl<'a> Lines<'a> {
             values[CHANNELS - 1] = LineLanes::ONE;
         }
         let down = LineLanes::ONE - high_halves(blue_height) * (1.0 / FULL_F32);
-        let place = (LineLanes::splat(q * self.scale) - down * self.depth_bins) / (down * growth + 1.0) - self.begin;
+        let place = (LineLanes::splat(q * self.scale) - down * self.depth_bins)
+            / (down * growth + 1.0)
+            - self.begin;
         Texels { values, place }
     }
 }

@@ -1,7 +1,8 @@
 //! The coordinates of a sweep: lines along the displacement, and the pixels on them.
 //!
-//! Rows are texel rows across the longer axis of the displacement, counted in the walking direction: `q` is their distance
-//! from the middle of the patch. A line is known by `xi`, its distance from the middle line where `q = 0`:
+//! Rows are texel rows across the longer axis of the displacement, counted in the walking
+//! direction: `q` is their distance from the middle of the patch. A line is known by `xi`, its
+//! distance from the middle line where `q = 0`:
 //!
 //! ```text
 //!   far end     \  |  /      lines run apart or together by the spread k
@@ -13,14 +14,16 @@
 //!                  xi ->     the walk goes from the near end to the far one
 //! ```
 //!
-//! with the shear `e = D_x / D_y`. On a plane the displacements of a picture are `D(p) = c (p - foot)`, where `foot` is the
-//! point under the eye: lines meet there, which is the spread `k = c / D`, and a texel at `q` and depth `d` is seen at
+//! with the shear `e = D_x / D_y`. On a plane the displacements of a picture are `D(p) = c (p -
+//! foot)`, where `foot` is the point under the eye: lines meet there, which is the spread `k = c /
+//! D`, and a texel at `q` and depth `d` is seen at
 //!
 //! ```text
 //! p = (q - d D) / (1 + d c)      from      q = p + d (D + c p).
 //! ```
 //!
-//! Curved surfaces have other growths along and across the lines, and displacements that differ from line to line.
+//! Curved surfaces have other growths along and across the lines, and displacements that differ
+//! from line to line.
 
 use super::pixels::PixelsOnLines;
 use crate::footprint::{Ellipses, Footprints};
@@ -30,7 +33,8 @@ use crate::texture::{Rows, Surface};
 /// Displacements shorter than this many texels do not hide anything that a texel could show.
 const FLAT: f32 = 1.0 / 64.0;
 
-/// How far, in radii of its ellipse and squared, a pixel's displacement may be from what the lines take it for.
+/// How far, in radii of its ellipse and squared, a pixel's displacement may be from what the lines
+/// take it for.
 const MOST_MISFIT: f32 = 0.25;
 
 /// Least and greatest distance between lines over that in the middle of the patch.
@@ -47,14 +51,16 @@ pub(super) struct SweepFrame<'a> {
     is_turned: bool,
     /// Texels a repeat along the rows and across them.
     texels: [f32; 2],
-    /// The middle in repeats and in texels, along the rows and across; texel centres lie at whole numbers.
+    /// The middle in repeats and in texels, along the rows and across; texel centres lie at whole
+    /// numbers.
     middle: [f32; 2],
     pub(super) origin: [f32; 2],
     /// 1 where the walk goes to higher rows, else -1.
     pub(super) toward: f32,
     pub(super) shear: f32,
     pub(super) spread: f32,
-    /// Rows down to the deepest relief in the middle, and how they grow per row and per texel across.
+    /// Rows down to the deepest relief in the middle, and how they grow per row and per texel
+    /// across.
     pub(super) depth: f32,
     pub(super) growth: f32,
     pub(super) tilt: f32,
@@ -63,8 +69,15 @@ pub(super) struct SweepFrame<'a> {
 }
 
 /// Sums over the picked lanes.
-fn total(pixels: &[Footprints], picked: &[PixelLanes], of: impl Fn(&Footprints) -> PixelLanes) -> f32 {
-    sum(pixels.iter().zip(picked).fold(PixelLanes::ZERO, |all, (pixels, picked)| all + (of(pixels) & *picked)))
+fn total(
+    pixels: &[Footprints],
+    picked: &[PixelLanes],
+    of: impl Fn(&Footprints) -> PixelLanes,
+) -> f32 {
+    sum(pixels
+        .iter()
+        .zip(picked)
+        .fold(PixelLanes::ZERO, |all, (pixels, picked)| all + (of(pixels) & *picked)))
 }
 
 /// The means over the picked lanes of place and displacement, in repeats.
@@ -73,12 +86,14 @@ pub(super) fn means(pixels: &[Footprints], picked: &[PixelLanes], num: usize) ->
     let lane = (0..8).find(|i| picked[0].as_array()[*i].to_bits() != 0).unwrap_or(0);
     let first = pixels[0].base.map(|lanes| lanes.as_array()[lane]);
     let inverse = 1.0 / num as f32;
-    let center = [0, 1].map(|i| first[i] + total(pixels, picked, |p| p.base[i] - first[i]) * inverse);
+    let center =
+        [0, 1].map(|i| first[i] + total(pixels, picked, |p| p.base[i] - first[i]) * inverse);
     [center, [0, 1].map(|i| total(pixels, picked, |p| p.displacement[i]) * inverse)]
 }
 
 impl<'a> SweepFrame<'a> {
-    /// The frame on a level around `middle` and `displacement` (means in repeats) of the picked pixels, without growth.
+    /// The frame on a level around `middle` and `displacement` (means in repeats) of the picked
+    /// pixels, without growth.
     pub(super) fn new(
         surface: &'a Surface,
         index: usize,
@@ -115,7 +130,8 @@ impl<'a> SweepFrame<'a> {
         if self.is_turned { [v, u] } else { [u, v] }
     }
 
-    /// Place and displacement of pixels in this frame: along the rows and in the walking direction, from the middle.
+    /// Place and displacement of pixels in this frame: along the rows and in the walking direction,
+    /// from the middle.
     #[inline]
     fn place(&self, pixels: &Footprints) -> [[PixelLanes; 2]; 2] {
         let [x, y] = self.turn(pixels.base);
@@ -125,12 +141,18 @@ impl<'a> SweepFrame<'a> {
     }
 
     /// Finds how displacements grow over the picked pixels. `None` where they grow in another way.
-    pub(super) fn fit(mut self, pixels: &[Footprints], ellipses: &[Ellipses], picked: &[PixelLanes]) -> Option<Self> {
+    pub(super) fn fit(
+        mut self,
+        pixels: &[Footprints],
+        ellipses: &[Ellipses],
+        picked: &[PixelLanes],
+    ) -> Option<Self> {
         if self.depth == 0.0 {
             return Some(self);
         }
         // Least squares, by the place on the middle's line and across it.
-        let [mut qq, mut qx, mut xx, mut q_along, mut x_along, mut x_across] = [PixelLanes::ZERO; 6];
+        let [mut qq, mut qx, mut xx, mut q_along, mut x_along, mut x_across] =
+            [PixelLanes::ZERO; 6];
         for (pixels, &picked) in pixels.iter().zip(picked) {
             let [[x, q], [along, across]] = self.growths(pixels);
             let product = |a: PixelLanes, b: PixelLanes| (a * b) & picked;
@@ -138,7 +160,8 @@ impl<'a> SweepFrame<'a> {
             (q_along, x_along) = (q_along + product(q, along), x_along + product(x, along));
             x_across += product(x, across);
         }
-        let [qq, qx, xx, q_along, x_along, x_across] = [qq, qx, xx, q_along, x_along, x_across].map(sum);
+        let [qq, qx, xx, q_along, x_along, x_across] =
+            [qq, qx, xx, q_along, x_along, x_across].map(sum);
         let determinant = qq * xx - qx * qx;
         if determinant > 1e-3 * qq * xx {
             self.growth = (q_along * xx - x_along * qx) / determinant;
@@ -161,14 +184,16 @@ impl<'a> SweepFrame<'a> {
         (is_fit && self.growth.abs() <= MOST_GROWTH).then_some(self)
     }
 
-    /// Pixels across and along the middle's line, and how their displacements differ from the middle's along and across it.
+    /// Pixels across and along the middle's line, and how their displacements differ from the
+    /// middle's along and across it.
     #[inline]
     fn growths(&self, pixels: &Footprints) -> [[PixelLanes; 2]; 2] {
         let [[x, q], [dx, dq]] = self.place(pixels);
         [[x - q * self.shear, q], [dq - self.depth, dx - dq * self.shear]]
     }
 
-    /// How far along the rows and across them pixels' displacements are from what the lines take them for.
+    /// How far along the rows and across them pixels' displacements are from what the lines take
+    /// them for.
     #[inline]
     fn residuals(&self, pixels: &Footprints) -> [PixelLanes; 2] {
         let [[x, q], [along, across]] = self.growths(pixels);
@@ -176,9 +201,14 @@ impl<'a> SweepFrame<'a> {
         [across - x * (self.spread * self.depth) + ry * self.shear, ry]
     }
 
-    /// The pixels' ellipses on the lines, moved to where the lines see what the pixels see at the mean depth.
+    /// The pixels' ellipses on the lines, moved to where the lines see what the pixels see at the
+    /// mean depth.
     #[inline]
-    pub(super) fn pixels_on_lines(&self, pixels: &Footprints, ellipses: &Ellipses) -> PixelsOnLines {
+    pub(super) fn pixels_on_lines(
+        &self,
+        pixels: &Footprints,
+        ellipses: &Ellipses,
+    ) -> PixelsOnLines {
         let [[x, q], _] = self.place(pixels);
         let [rx, ry] = self.residuals(pixels);
         let (x, q) = (x + rx * self.mean_depth, q + ry * self.mean_depth);
@@ -186,7 +216,8 @@ impl<'a> SweepFrame<'a> {
         let xi = (x - q * self.shear) / scale;
         let shear = xi * self.spread + self.shear;
         let ([a, c], b) = (self.turn([ellipses.a, ellipses.c]), ellipses.b * self.toward);
-        // F = A C - B^2 / 4, which the shear keeps: so A' - B'^2 / 4C' is 1 / C F, without a difference that cancels.
+        // F = A C - B^2 / 4, which the shear keeps: so A' - B'^2 / 4C' is 1 / C F, without a
+        // difference that cancels.
         let c = ((a * shear + b) * shear + c).fast_max(ellipses.f / a);
         let b = (a * shear * 2.0 + b) * scale;
         let width = c.sqrt() / scale;
@@ -211,7 +242,8 @@ impl<'a> SweepFrame<'a> {
         1.0 + self.spread * q
     }
 
-    /// The greatest distance between lines over that in the middle, between two rows; `None` where lines run together.
+    /// The greatest distance between lines over that in the middle, between two rows; `None` where
+    /// lines run together.
     pub(super) fn greatest_scale(&self, rows: [f32; 2]) -> Option<f32> {
         let [a, b] = rows.map(|q| self.scale_at(q));
         let is_regular = |scale: f32| (SPREAD[0]..=SPREAD[1]).contains(&scale);

@@ -1,8 +1,9 @@
 //! What lines see on their way: the floating horizon itself.
 //!
-//! Each line keeps `M`, the farthest place seen so far. A row's texel at place `p` makes the part from `M` to `p` visible,
-//! if there is one; the segment between two rows is linear, so the colour of that part is the one at its middle. A line that
-//! passes the end of a bin writes the bin's mean and those of the bins that lie in the rest of the part.
+//! Each line keeps `M`, the farthest place seen so far. A row's texel at place `p` makes the part
+//! from `M` to `p` visible, if there is one; the segment between two rows is linear, so the colour
+//! of that part is the one at its middle. A line that passes the end of a bin writes the bin's mean
+//! and those of the bins that lie in the rest of the part.
 //!
 //! ```text
 //!   bins        |     0     |     1     |     2     |     3     |
@@ -18,7 +19,8 @@
 use super::grid::{GROUP, Row, Texels};
 use crate::simd::LineLanes;
 
-/// Least length of a segment, in bins, that a place in it is divided by: a shorter one shows one colour.
+/// Least length of a segment, in bins, that a place in it is divided by: a shorter one shows one
+/// colour.
 const LEAST_SEGMENT: f32 = 1e-6;
 
 /// A group of lines on its way. Places are in bins.
@@ -48,7 +50,9 @@ impl<const CHANNELS: usize> Segment<'_, CHANNELS> {
         let Self { last, next, inverse } = self;
         // Where the middle lies between the last texel (0) and the next one (1).
         let (middle, length) = (((from + to) * 0.5 - last.place) * *inverse, to - from);
-        std::array::from_fn(|i| (last.values[i] + (next.values[i] - last.values[i]) * middle) * length)
+        std::array::from_fn(|i| {
+            (last.values[i] + (next.values[i] - last.values[i]) * middle) * length
+        })
     }
 
     /// The colour of one line at a place.
@@ -64,13 +68,20 @@ impl<const CHANNELS: usize> Segment<'_, CHANNELS> {
 }
 
 impl<const CHANNELS: usize> Walk<CHANNELS> {
-    /// Sixteen lines from line `at` on, of which those beyond `num_lines` see nothing, over a range of bins.
+    /// Sixteen lines from line `at` on, of which those beyond `num_lines` see nothing, over a range
+    /// of bins.
     pub(super) fn new(num_lines: usize, at: usize, [first_bin, end_bin]: [usize; 2]) -> Self {
         let mut bins = [end_bin as f32; GROUP];
         bins[..(num_lines - at).min(GROUP)].fill(first_bin as f32);
         // M starts at the first bin: the first row lies before it.
         let record = LineLanes::new(bins);
-        Self { record, bin: record, sums: [LineLanes::ZERO; CHANNELS], at, end: LineLanes::splat(end_bin as f32) }
+        Self {
+            record,
+            bin: record,
+            sums: [LineLanes::ZERO; CHANNELS],
+            at,
+            end: LineLanes::splat(end_bin as f32),
+        }
     }
 
     /// Whether all bins of all lines are written.
@@ -80,8 +91,14 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
 
     /// Adds what is seen beyond the record of the segment between two rows.
     #[inline(always)]
-    pub(super) fn pass(&mut self, last: &Texels<CHANNELS>, next: &Texels<CHANNELS>, bins: &mut [[Row; CHANNELS]]) {
-        let inverse = LineLanes::ONE / (next.place - last.place).fast_max(LineLanes::splat(LEAST_SEGMENT));
+    pub(super) fn pass(
+        &mut self,
+        last: &Texels<CHANNELS>,
+        next: &Texels<CHANNELS>,
+        bins: &mut [[Row; CHANNELS]],
+    ) {
+        let inverse =
+            LineLanes::ONE / (next.place - last.place).fast_max(LineLanes::splat(LEAST_SEGMENT));
         let segment = Segment { last, next, inverse };
         let record = self.record.fast_max(next.place).fast_min(self.end);
         let bin_end = self.bin + LineLanes::ONE;
@@ -101,14 +118,21 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
 
     /// Writes the bins from each full line's own one up to `end`.
     #[inline(always)]
-    fn write(&self, full: u32, end: LineLanes, segment: &Segment<CHANNELS>, bins: &mut [[Row; CHANNELS]]) {
+    fn write(
+        &self,
+        full: u32,
+        end: LineLanes,
+        segment: &Segment<CHANNELS>,
+        bins: &mut [[Row; CHANNELS]],
+    ) {
         let [from, to] = [self.bin, end].map(|bin| bin.fast_trunc_int().to_array());
         let mut left = full;
         while left != 0 {
             let lane = left.trailing_zeros() as usize & (GROUP - 1);
             let bins = &mut bins[from[lane] as usize..to[lane] as usize];
             if let Some((first, others)) = bins.split_first_mut() {
-                (0..CHANNELS).for_each(|i| first[i][self.at + lane] = self.sums[i].as_array()[lane]);
+                (0..CHANNELS)
+                    .for_each(|i| first[i][self.at + lane] = self.sums[i].as_array()[lane]);
                 for (bin, number) in others.iter_mut().zip(from[lane] + 1..) {
                     let color = segment.at(lane, number as f32 + 0.5);
                     (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = color[i]);
@@ -123,7 +147,8 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
         let end = self.end.as_array()[0] as usize;
         for lane in 0..GROUP {
             for bin in &mut bins[self.bin.as_array()[lane] as usize..end] {
-                (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = last.values[i].as_array()[lane]);
+                (0..CHANNELS)
+                    .for_each(|i| bin[i][self.at + lane] = last.values[i].as_array()[lane]);
             }
         }
     }

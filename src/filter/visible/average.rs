@@ -5,8 +5,14 @@ use crate::footprint::{Ellipse, RowQuadric};
 use crate::simd::{TexelLanes, bits_mask, exp_negative, high_half, lane_columns, low_half, sum};
 use crate::texture::{Level, Rows, Texel, unpack_normals};
 
-/// The weighted mean of the texels of `set` in the ellipse around `center` (in texels); `None` for an empty set.
-pub fn average(level: &Level, set: &TexelSet, ellipse: &Ellipse, center: [f32; 2]) -> Option<Texel> {
+/// The weighted mean of the texels of `set` in the ellipse around `center` (in texels); `None` for
+/// an empty set.
+pub fn average(
+    level: &Level,
+    set: &TexelSet,
+    ellipse: &Ellipse,
+    center: [f32; 2],
+) -> Option<Texel> {
     let [x0, y0] = center.map(|c| c - 0.5);
     let rows = level.rows(false);
     let mut sums = Sums::default();
@@ -17,7 +23,10 @@ pub fn average(level: &Level, set: &TexelSet, ellipse: &Ellipse, center: [f32; 2
         for (i, &bits) in set.bits[first..first + num].iter().enumerate() {
             if bits != 0 {
                 let x = row.x + 8 * i as i32;
-                let r2 = quadric.at(lane_columns(x) - x0).fast_max(TexelLanes::ZERO).fast_min(TexelLanes::ONE);
+                let r2 = quadric
+                    .at(lane_columns(x) - x0)
+                    .fast_max(TexelLanes::ZERO)
+                    .fast_min(TexelLanes::ONE);
                 sums.add(rows, start + rows.run_start(x), exp_negative(r2 + r2) & bits_mask(bits));
             }
         }

@@ -1,6 +1,8 @@
-//! The paper's method: the weighted mean of those texels of the ellipse that the relief does not hide.
+//! The paper's method: the weighted mean of those texels of the ellipse that the relief does not
+//! hide.
 //!
-//! [`TexelSet`] holds the texels T of an ellipse, [`remove_hidden`] takes out those that [`Occlusion`] finds hidden.
+//! [`TexelSet`] holds the texels T of an ellipse, [`remove_hidden`] takes out those that
+//! [`Occlusion`] finds hidden.
 
 mod average;
 mod occlusion;
@@ -41,7 +43,12 @@ pub fn ellipse_rule(visible: &Visible) -> EllipseRule {
 }
 
 /// The mean of the texels of one pixel's ellipse around the hit, hidden ones left out.
-pub fn mean(surface: &Surface, footprint: &Footprint, visible: &Visible, set: &mut TexelSet) -> (Texel, Work) {
+pub fn mean(
+    surface: &Surface,
+    footprint: &Footprint,
+    visible: &Visible,
+    set: &mut TexelSet,
+) -> (Texel, Work) {
     // Find the texels of the ellipse: T.
     let (index, ellipse) = within_budget(surface, footprint, &ellipse_rule(visible));
     let level = &surface.levels()[index];
@@ -54,7 +61,8 @@ pub fn mean(surface: &Surface, footprint: &Footprint, visible: &Visible, set: &m
         let occlusion = Occlusion::new(level, level.in_texels(footprint.displacement));
         remove_hidden(set, &occlusion, visible.visibility)
     };
-    // T_vis is never empty: where every texel of a set was hidden or skipped, the hit itself counts.
+    // T_vis is never empty: where every texel of a set was hidden or skipped, the hit itself
+    // counts.
     let mean = average(level, set, &ellipse, center);
     let work = Work { num_tested, num_averaged: set.len() as u64 };
     (mean.unwrap_or_else(|| points::bilinear(level, footprint.hit)), work)

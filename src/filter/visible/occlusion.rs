@@ -1,21 +1,24 @@
 //! The paper's method: which texels of the ellipse the relief leaves visible.
 //!
-//! A texel is hidden when the ray from it to the eye meets higher relief. The ray leaves the texel's centre at its
-//! height and is followed against the displacement `D` (in texels), in steps of one texel along the longer axis of `D`,
-//! until it is above all relief; between two texels across the ray the height is interpolated. At one pixel the slope is
-//! the same for all texels, so a step of eight neighbouring rays reads eight neighbouring heights.
+//! A texel is hidden when the ray from it to the eye meets higher relief. The ray leaves the
+//! texel's centre at its height and is followed against the displacement `D` (in texels), in steps
+//! of one texel along the longer axis of `D`, until it is above all relief; between two texels
+//! across the ray the height is interpolated. At one pixel the slope is the same for all texels, so
+//! a step of eight neighbouring rays reads eight neighbouring heights.
 //!
-//! Beyond the paper's letter, the ellipse has Heckbert's kernel and weight, and where the relief jumps between two pixels of
-//! a quad, formula (3), which spans the jump and so takes in texels of two unrelated parts and all around them, gives way
-//! to formula (2) (`max_stretch`; 0 keeps the letter). As in the paper, a
-//! texel counts whole or not at all, so one seen from its side counts like one that faces the eye.
+//! Beyond the paper's letter, the ellipse has Heckbert's kernel and weight, and where the relief
+//! jumps between two pixels of a quad, formula (3), which spans the jump and so takes in texels of
+//! two unrelated parts and all around them, gives way to formula (2) (`max_stretch`; 0 keeps the
+//! letter). As in the paper, a texel counts whole or not at all, so one seen from its side counts
+//! like one that faces the eye.
 
 use super::texel_set::{TexelRow, TexelSet};
 use crate::settings::Visibility;
 use crate::simd::{TexelLanes, high_half};
 use crate::texture::{FULL_F32, Level, Rows};
 
-/// How much higher than the ray, in stored units of height, relief must be to hide a texel: rounding alone must not.
+/// How much higher than the ray, in stored units of height, relief must be to hide a texel:
+/// rounding alone must not.
 const TOLERANCE: f32 = 1.0 / 16.0;
 
 /// The heights of a level and the direction to the eye.
@@ -35,7 +38,12 @@ impl<'a> Occlusion<'a> {
         let [dx, dy] = displacement;
         let runs_along_x = dx.abs() > dy.abs();
         let length = dx.abs().max(dy.abs()).max(1e-3);
-        Self { rows: level.rows(false), step: [-dx / length, -dy / length], runs_along_x, rise: FULL_F32 / length }
+        Self {
+            rows: level.rows(false),
+            step: [-dx / length, -dy / length],
+            runs_along_x,
+            rise: FULL_F32 / length,
+        }
     }
 
     /// Which of the texels of `bits`, the first at column `x` of row `y`, the eye sees.
@@ -49,23 +57,28 @@ impl<'a> Occlusion<'a> {
             let relief = self.heights_across(x, y, i as f32);
             hidden |= relief.simd_gt(height + TOLERANCE).to_bitmask() as u8;
             let open = bits & !hidden;
-            if open == 0 || (height.simd_lt(TexelLanes::splat(FULL_F32)).to_bitmask() as u8 & open) == 0 {
+            if open == 0
+                || (height.simd_lt(TexelLanes::splat(FULL_F32)).to_bitmask() as u8 & open) == 0
+            {
                 break;
             }
         }
         bits & !hidden
     }
 
-    /// The texel that covers a hidden one: where its ray first meets higher relief, the higher of the two texels across
-    /// the ray, so that a chain of coverers rises and ends. `None` for a visible texel.
+    /// The texel that covers a hidden one: where its ray first meets higher relief, the higher of
+    /// the two texels across the ray, so that a chain of coverers rises and ends. `None` for a
+    /// visible texel.
     pub fn coverer(&self, x: i32, y: i32) -> Option<[i32; 2]> {
         let mut height = self.heights(x as f32, y as f32).as_array()[0];
         for i in 1..=(FULL_F32 / self.rise).ceil() as i32 {
             height += self.rise;
-            let [near, far, part] = self.neighbours_across(x, y, i as f32).map(|lanes| lanes.as_array()[0]);
+            let [near, far, part] =
+                self.neighbours_across(x, y, i as f32).map(|lanes| lanes.as_array()[0]);
             if near + (far - near) * part > height + TOLERANCE {
                 let [x, y] = [x, y].map(|c| c as f32);
-                let cell = [x + (i as f32 * self.step[0]).floor(), y + (i as f32 * self.step[1]).floor()];
+                let cell =
+                    [x + (i as f32 * self.step[0]).floor(), y + (i as f32 * self.step[1]).floor()];
                 let across = usize::from(self.runs_along_x);
                 let mut texel = cell.map(|c| c as i32);
                 texel[across] += i32::from(far > near);
@@ -90,7 +103,8 @@ impl<'a> Occlusion<'a> {
         near + (far - near) * part
     }
 
-    /// The heights on both sides of eight neighbouring rays after `i` steps, and how far these lie towards the second.
+    /// The heights on both sides of eight neighbouring rays after `i` steps, and how far these lie
+    /// towards the second.
     fn neighbours_across(&self, x: i32, y: i32, i: f32) -> [TexelLanes; 3] {
         let place = [i * self.step[0], i * self.step[1]];
         let cell = place.map(f32::floor);
@@ -110,7 +124,9 @@ pub fn remove_hidden(set: &mut TexelSet, occlusion: &Occlusion, how: Visibility)
         Visibility::Exact => remove_exact(set, occlusion),
         Visibility::TwoEnded => {
             let TexelSet { rows, bits } = set;
-            rows.iter().map(|row| keep_ends(row, &mut bits[row.batches[0]..][..row.batches[1]], occlusion)).sum()
+            rows.iter()
+                .map(|row| keep_ends(row, &mut bits[row.batches[0]..][..row.batches[1]], occlusion))
+                .sum()
         }
         Visibility::Resolved => resolve(set, occlusion),
     }
@@ -148,9 +164,9 @@ fn keep_ends(row: &TexelRow, batches: &mut [u8], occlusion: &Occlusion) -> u64 {
     num_tested
 }
 
-/// Traces every texel; a hidden one leads to the texel that covers it, which leads on until a visible one, and that counts,
-/// if it lies in T. A buffer of texels traced before ends a chain early and keeps each from counting twice (the paper's
-/// Fig. 6).
+/// Traces every texel; a hidden one leads to the texel that covers it, which leads on until a
+/// visible one, and that counts, if it lies in T. A buffer of texels traced before ends a chain
+/// early and keeps each from counting twice (the paper's Fig. 6).
 fn resolve(set: &mut TexelSet, occlusion: &Occlusion) -> u64 {
     let inside = set.clone();
     let mut is_traced = vec![0; set.bits.len()];

@@ -1,7 +1,8 @@
 //! A set of texels of one mip level, row by row: the paper's T, `T_vis`, and what lies between.
 //!
-//! Rows hold runs of eight neighbouring texels, a bit each, so that membership and visibility are decided a batch at a
-//! time and the sums visit only batches that hold a texel. A texel's place is its column and row in the endless pattern.
+//! Rows hold runs of eight neighbouring texels, a bit each, so that membership and visibility are
+//! decided a batch at a time and the sums visit only batches that hold a texel. A texel's place is
+//! its column and row in the endless pattern.
 
 use crate::footprint::{Ellipse, RowQuadric};
 use crate::simd::{TexelLanes, lane_columns};
@@ -27,7 +28,8 @@ pub struct TexelSet {
 }
 
 impl TexelSet {
-    /// Makes this the set T: texels whose centre lies in the ellipse around `center`, given in texels.
+    /// Makes this the set T: texels whose centre lies in the ellipse around `center`, given in
+    /// texels.
     pub fn fill_ellipse(&mut self, ellipse: &Ellipse, center: [f32; 2]) {
         self.rows.clear();
         self.bits.clear();

@@ -1,7 +1,8 @@
 //! Cleans the lines of an MTL file for tobj.
 //!
-//! Keywords are read in any spelling of upper and lower case and handed to tobj in its own; what tobj would panic at or
-//! refuse a whole file for (`Kd` with one number, an empty `map_Kd`) is put right or refused with its line before.
+//! Keywords are read in any spelling of upper and lower case and handed to tobj in its own; what
+//! tobj would panic at or refuse a whole file for (`Kd` with one number, an empty `map_Kd`) is put
+//! right or refused with its line before.
 
 use crate::error::Result;
 use crate::load::lines::{Clean, Place};
@@ -53,10 +54,13 @@ impl Clean for MtlLines {
         lines.insert(keyword, at.line);
         if rest.is_empty() {
             self.warnings.push(at.remark(format_args!("{word} names no file or value")));
-        } else if matches!(keyword, "Kd" | "Ks") && (rest.starts_with("spectral") || rest.starts_with("xyz")) {
+        } else if matches!(keyword, "Kd" | "Ks")
+            && (rest.starts_with("spectral") || rest.starts_with("xyz"))
+        {
             self.warnings.push(at.remark(format_args!("{word} {rest} is not supported")));
         } else {
-            let values = values(keyword, rest).map_err(|reason| at.refuse(format!("{word}: {reason}")))?;
+            let values =
+                values(keyword, rest).map_err(|reason| at.refuse(format!("{word}: {reason}")))?;
             let _ = writeln!(out, "{keyword} {values}");
         }
         Ok(())
@@ -83,7 +87,8 @@ fn number(text: &str) -> std::result::Result<f32, String> {
 /// Three numbers, or one for all three as the format allows.
 fn color(text: &str) -> std::result::Result<[f32; 3], String> {
     let words = text.split('#').next().unwrap_or_default();
-    let numbers = words.split_whitespace().take(3).map(number).collect::<std::result::Result<Vec<_>, _>>()?;
+    let numbers =
+        words.split_whitespace().take(3).map(number).collect::<std::result::Result<Vec<_>, _>>()?;
     match numbers[..] {
         [r, g, b] => Ok([r, g, b]),
         [r] => Ok([r; 3]),

@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use texture_line::TextureLine;
 
-/// Largest MTL file that is read in bytes, and most materials: real ones have a few hundred kilobytes.
+/// Largest MTL file that is read in bytes, and most materials: real ones have a few hundred
+/// kilobytes.
 const MAX_MTL_BYTES: u64 = 16 << 20;
 const MAX_MATERIALS: usize = 65536;
 
@@ -69,15 +70,27 @@ impl MtlFiles {
     pub(super) fn new(obj: &Path, folder: &Folder) -> Self {
         let (materials, warnings) = (Vec::new(), Vec::new());
         let (obj, folder) = (obj.into(), folder.clone());
-        Self { obj, line: 0, folder, materials, warnings, failure: None, known: HashSet::new(), files: HashSet::new() }
+        Self {
+            obj,
+            line: 0,
+            folder,
+            materials,
+            warnings,
+            failure: None,
+            known: HashSet::new(),
+            files: HashSet::new(),
+        }
     }
 
-    /// Reads what an `mtllib` line names: one file with spaces in its name, or several. Failures are kept. tobj counts the
-    /// materials that it is handed and finds them by name; what is in them it need not know.
+    /// Reads what an `mtllib` line names: one file with spaces in its name, or several. Failures
+    /// are kept. tobj counts the materials that it is handed and finds them by name; what is in
+    /// them it need not know.
     pub(super) fn read(&mut self, names: &Path) -> tobj::MTLLoadResult {
         let before = self.materials.len();
         let files = self.find(&names.to_string_lossy().replace('\\', "/"));
-        if let Err(failure) = files.and_then(|files| files.iter().try_for_each(|file| self.read_file(file))) {
+        if let Err(failure) =
+            files.and_then(|files| files.iter().try_for_each(|file| self.read_file(file)))
+        {
             self.failure.get_or_insert(failure);
             self.materials.truncate(before);
         }
@@ -88,17 +101,26 @@ impl MtlFiles {
     /// The files behind the names, each as it is to be shown; those read before are left out.
     fn find(&mut self, names: &str) -> Result<Vec<PathBuf>> {
         let names = names.trim_matches('"');
-        let resolve = |name: &str| self.folder.resolve(name, Place { path: &self.obj, line: self.line });
+        let resolve =
+            |name: &str| self.folder.resolve(name, Place { path: &self.obj, line: self.line });
         if let Some(path) = resolve(names)? {
-            return Ok(self.files.insert(path).then(|| self.obj.with_file_name(names)).into_iter().collect());
+            return Ok(self
+                .files
+                .insert(path)
+                .then(|| self.obj.with_file_name(names))
+                .into_iter()
+                .collect());
         }
         let mut found = Vec::new();
         for name in names.split_whitespace() {
             match resolve(name)? {
-                Some(path) => found.extend(self.files.insert(path).then(|| self.obj.with_file_name(name))),
+                Some(path) => {
+                    found.extend(self.files.insert(path).then(|| self.obj.with_file_name(name)))
+                }
                 None if self.files.insert(name.into()) => {
                     let path = self.obj.with_file_name(name);
-                    self.warnings.push(format!("{}: no such file; plain colours are drawn", path.display()));
+                    self.warnings
+                        .push(format!("{}: no such file; plain colours are drawn", path.display()));
                 }
                 None => {}
             }
@@ -109,7 +131,10 @@ impl MtlFiles {
     fn read_file(&mut self, path: &Path) -> Result<()> {
         let file = open_regular(path)?;
         if file.metadata().is_ok_and(|data| data.len() > MAX_MTL_BYTES) {
-            return Err(Error::file(path, format!("more than {} MiB are no material file", MAX_MTL_BYTES >> 20)));
+            return Err(Error::file(
+                path,
+                format!("more than {} MiB are no material file", MAX_MTL_BYTES >> 20),
+            ));
         }
         self.read_text(BufReader::new(file.take(MAX_MTL_BYTES)), path)
     }
@@ -140,7 +165,12 @@ impl MtlFiles {
         Ok(())
     }
 
-    fn take_apart(&mut self, from: &tobj::Material, lines: &LineNumbers, path: &Arc<Path>) -> Result<MtlMaterial> {
+    fn take_apart(
+        &mut self,
+        from: &tobj::Material,
+        lines: &LineNumbers,
+        path: &Arc<Path>,
+    ) -> Result<MtlMaterial> {
         let unknown = |key: &str| from.unknown_param.get(key);
         let mut texture = |keyword: &'static str, text: Option<&String>| {
             text.map(|text| {
@@ -161,13 +191,20 @@ impl MtlFiles {
         })
     }
 
-    fn texture(&mut self, keyword: &'static str, text: &str, at: Place<'_>, path: &Arc<Path>) -> Result<TextureRef> {
+    fn texture(
+        &mut self,
+        keyword: &'static str,
+        text: &str,
+        at: Place<'_>,
+        path: &Arc<Path>,
+    ) -> Result<TextureRef> {
         let mut texture = TextureLine::parse(text).map_err(|reason| at.refuse(reason))?;
         if keyword != "disp" && keyword != "map_Bump" && texture.range != [0.0, 1.0] {
             texture.unsupported.push("-mm".into());
         }
         for option in &texture.unsupported {
-            self.warnings.push(at.remark(format_args!("option {option} of {keyword} is not supported")));
+            self.warnings
+                .push(at.remark(format_args!("option {option} of {keyword} is not supported")));
         }
         Ok(TextureRef { texture, keyword, path: Arc::clone(path), line: at.line })
     }
@@ -176,8 +213,9 @@ impl MtlFiles {
     pub(super) fn remark_unknown(&mut self, name: &str, at: Place<'_>) {
         let is_known = self.known.contains(name);
         if !is_known && !self.materials.is_empty() && self.known.insert(name.into()) {
-            self.warnings
-                .push(at.remark(format_args!("material '{name}' is not defined before; plain colour is drawn")));
+            self.warnings.push(at.remark(format_args!(
+                "material '{name}' is not defined before; plain colour is drawn"
+            )));
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The grammar of a texture line: `[-option value…] file name [-option value…]`.
 //!
-//! Options may stand before or after the name, the name may hold spaces, and backslashes are turned into slashes.
+//! Options may stand before or after the name, the name may hold spaces, and backslashes are turned
+//! into slashes.
 
 use crate::decode::Channel;
 
@@ -53,7 +54,8 @@ impl TextureLine {
         while first + 1 < words.len() && is_option(words[first]) {
             first += line.take_option(&words[first..words.len() - 1])?;
         }
-        let end = (first + 1..words.len()).find(|&i| is_all_options(&words[i..])).unwrap_or(words.len());
+        let end =
+            (first + 1..words.len()).find(|&i| is_all_options(&words[i..])).unwrap_or(words.len());
         let mut next = end;
         while next < words.len() {
             next += line.take_option(&words[next..])?;
@@ -77,8 +79,12 @@ impl TextureLine {
             "-s" => self.scale = [number(0)?, second(1.0)?],
             "-o" => self.offset = [number(0)?, second(0.0)?],
             "-mm" => self.range = [number(0)?, number(1)?],
-            "-clamp" => self.is_clamped = values.first().is_some_and(|word| word.eq_ignore_ascii_case("on")),
-            "-imfchan" => self.channel = Some(channel(values.first().copied().unwrap_or_default())?),
+            "-clamp" => {
+                self.is_clamped = values.first().is_some_and(|word| word.eq_ignore_ascii_case("on"))
+            }
+            "-imfchan" => {
+                self.channel = Some(channel(values.first().copied().unwrap_or_default())?)
+            }
             _ => self.unsupported.push(option.clone()),
         }
         Ok(1 + values.len())
@@ -138,7 +144,9 @@ fn values_of(option: &str) -> Values {
 /// How many of `words` are values of the option before them.
 fn num_values(option: &str, words: &[&str]) -> usize {
     match values_of(option) {
-        Values::Numbers(most) => words.iter().take(most).take_while(|word| word.parse::<f32>().is_ok()).count(),
+        Values::Numbers(most) => {
+            words.iter().take(most).take_while(|word| word.parse::<f32>().is_ok()).count()
+        }
         Values::Switch => usize::from(words.first().is_some_and(|word| is_switch(word))),
         Values::Word => words.len().min(1),
         Values::Unknown => 0,
@@ -171,9 +179,15 @@ mod tests {
 
     #[test]
     fn options_before_and_after_the_name() {
-        for text in ["-bm 0.1 -clamp on a b.png", "a b.png -bm 0.1 -clamp on", "-bm 0.1 a b.png -clamp on"] {
+        for text in
+            ["-bm 0.1 -clamp on a b.png", "a b.png -bm 0.1 -clamp on", "-bm 0.1 a b.png -clamp on"]
+        {
             let line = parse(text);
-            assert_eq!((line.name.as_str(), line.bump, line.is_clamped), ("a b.png", Some(0.1), true), "{text}");
+            assert_eq!(
+                (line.name.as_str(), line.bump, line.is_clamped),
+                ("a b.png", Some(0.1), true),
+                "{text}"
+            );
         }
     }
 
@@ -187,9 +201,14 @@ mod tests {
 
     #[test]
     fn unsupported_options_are_skipped_and_named() {
-        let line = parse("-blendu off -blendv on -boost 2 -t 1 1 1 -texres 256 -type sphere -colorspace sRGB x.png");
+        let line = parse(
+            "-blendu off -blendv on -boost 2 -t 1 1 1 -texres 256 -type sphere -colorspace sRGB x.png",
+        );
         assert_eq!(line.name, "x.png");
-        assert_eq!(line.unsupported, ["-blendu", "-blendv", "-boost", "-t", "-texres", "-type", "-colorspace"]);
+        assert_eq!(
+            line.unsupported,
+            ["-blendu", "-blendv", "-boost", "-t", "-texres", "-type", "-colorspace"]
+        );
         assert_eq!(parse("-frob x.png").unsupported, ["-frob"]);
     }
 
@@ -204,7 +223,9 @@ mod tests {
 
     #[test]
     fn wrong_values_are_refused() {
-        for text in ["-bm x.png y.png", "-mm 1 x.png", "-imfchan q x.png", "-bm nan x.png", "x.png -s inf"] {
+        for text in
+            ["-bm x.png y.png", "-mm 1 x.png", "-imfchan q x.png", "-bm nan x.png", "x.png -s inf"]
+        {
             assert!(TextureLine::parse(text).is_err(), "{text}");
         }
     }

@@ -1,8 +1,9 @@
 //! The lines of an OBJ file, put right where tobj stumbles over them.
 //!
-//! Lines and points are left out (tobj makes triangles of long `l` lines), comments behind numbers are cut, colours
-//! behind positions are dropped, indices of 0 or before the first are refused, and a model is split where its faces
-//! begin or cease to have texture coordinates or normals, since tobj keeps no record of which vertex went without.
+//! Lines and points are left out (tobj makes triangles of long `l` lines), comments behind numbers
+//! are cut, colours behind positions are dropped, indices of 0 or before the first are refused, and
+//! a model is split where its faces begin or cease to have texture coordinates or normals, since
+//! tobj keeps no record of which vertex went without.
 
 use crate::error::Result;
 use crate::load::lines::{Clean, Place};
@@ -49,19 +50,24 @@ impl<'a> ObjLines<'a> {
         }
     }
 
-    /// Faces may not name texture coordinates or normals in a file that has none; tobj lets that pass.
+    /// Faces may not name texture coordinates or normals in a file that has none; tobj lets that
+    /// pass.
     pub(super) fn check_lists(&self, path: &Path) -> Result<()> {
         let place = |line| Place { path, line };
         if self.num_tex_coords == 0 && self.first_with_tex_coords > 0 {
-            return Err(place(self.first_with_tex_coords).refuse("names texture coordinates, and the file has none"));
+            return Err(place(self.first_with_tex_coords)
+                .refuse("names texture coordinates, and the file has none"));
         }
         if self.num_normals == 0 && self.first_with_normals > 0 {
-            return Err(place(self.first_with_normals).refuse("names normals, and the file has none"));
+            return Err(
+                place(self.first_with_normals).refuse("names normals, and the file has none")
+            );
         }
         Ok(())
     }
 
-    /// Counts a `v`, `vt` or `vn`; as many are allowed as triangles, lest memory fills without one face.
+    /// Counts a `v`, `vt` or `vn`; as many are allowed as triangles, lest memory fills without one
+    /// face.
     fn count(&mut self, keyword: &str, at: Place<'_>) -> Result<()> {
         let num = match keyword {
             "v" => &mut self.num_positions,
@@ -70,7 +76,10 @@ impl<'a> ObjLines<'a> {
         };
         *num += 1;
         if *num > self.max_triangles {
-            return Err(at.refuse_limit(format!("more than {} vertices", self.max_triangles), "max_triangles"));
+            return Err(at.refuse_limit(
+                format!("more than {} vertices", self.max_triangles),
+                "max_triangles",
+            ));
         }
         Ok(())
     }
@@ -82,7 +91,10 @@ impl<'a> ObjLines<'a> {
         }
         self.num_triangles += scan.num - 2;
         if self.num_triangles > self.max_triangles {
-            return Err(at.refuse_limit(format!("more than {} triangles", self.max_triangles), "max_triangles"));
+            return Err(at.refuse_limit(
+                format!("more than {} triangles", self.max_triangles),
+                "max_triangles",
+            ));
         }
         let corners = self.note(&scan, at.line);
         if self.corners.replace(corners).is_some_and(|before| before != corners) {
@@ -100,8 +112,10 @@ impl<'a> ObjLines<'a> {
 
     /// What all corners of a face name; keeps the first line that names it.
     fn note(&mut self, scan: &Scan, line: usize) -> Corners {
-        let corners =
-            Corners { have_tex_coords: scan.num_tex_coords == scan.num, have_normals: scan.num_normals == scan.num };
+        let corners = Corners {
+            have_tex_coords: scan.num_tex_coords == scan.num,
+            have_normals: scan.num_normals == scan.num,
+        };
         if corners.have_tex_coords && self.first_with_tex_coords == 0 {
             self.first_with_tex_coords = line;
         }
@@ -115,7 +129,8 @@ impl<'a> ObjLines<'a> {
     fn scan(&self, text: &str) -> std::result::Result<Scan, String> {
         let mut scan = Scan::default();
         let is_end = |byte: &u8| *byte == b'/' || byte.is_ascii_whitespace();
-        // Which number of a corner is read, and whether a byte of the corner and of the number were seen.
+        // Which number of a corner is read, and whether a byte of the corner and of the number were
+        // seen.
         let (mut part, mut is_corner, mut is_number) = (0, false, false);
         for (at, byte) in text.bytes().enumerate() {
             if byte.is_ascii_whitespace() {
@@ -131,7 +146,8 @@ impl<'a> ObjLines<'a> {
             } else if !is_number {
                 is_number = true;
                 if matches!(byte, b'0' | b'-') {
-                    let len = text.as_bytes()[at..].iter().position(&is_end).unwrap_or(text.len() - at);
+                    let len =
+                        text.as_bytes()[at..].iter().position(&is_end).unwrap_or(text.len() - at);
                     let num = match part {
                         0 => self.num_positions,
                         1 => self.num_tex_coords,
@@ -157,7 +173,9 @@ struct Scan {
 fn check_index(index: &str, num: u64) -> std::result::Result<(), String> {
     match index.parse::<i64>() {
         Ok(0) => Err("index 0: indices count from 1, or back from -1".into()),
-        Ok(i) if i < 0 && i.unsigned_abs() > num => Err(format!("index {i} is out of range: only {num} so far")),
+        Ok(i) if i < 0 && i.unsigned_abs() > num => {
+            Err(format!("index {i} is out of range: only {num} so far"))
+        }
         _ => Ok(()),
     }
 }

@@ -1,4 +1,5 @@
-//! Finds the line of an error that shows only after the whole OBJ file is read. Runs on failure only.
+//! Finds the line of an error that shows only after the whole OBJ file is read. Runs on failure
+//! only.
 
 use super::clean::ObjLines;
 use crate::error::{Error, Result};
@@ -12,7 +13,8 @@ pub(super) fn bad_index(source: &dyn Source) -> Option<Error> {
         while lines.advance().ok()? {}
         [lines.cleaner.num_positions, lines.cleaner.num_tex_coords, lines.cleaner.num_normals]
     };
-    // An index may look ahead within the file; only if none is beyond the end, one looked too far ahead.
+    // An index may look ahead within the file; only if none is beyond the end, one looked too far
+    // ahead.
     first_beyond(source, Some(num_in_file)).or_else(|| first_beyond(source, None))
 }
 
@@ -21,15 +23,23 @@ fn first_beyond(source: &dyn Source, num_in_file: Option<[u64; 3]>) -> Option<Er
     let mut lines = lines(source).ok()?;
     while found.is_none() && lines.advance().ok()? {
         let cleaner = &lines.cleaner;
-        let num = num_in_file.unwrap_or([cleaner.num_positions, cleaner.num_tex_coords, cleaner.num_normals]);
+        let num = num_in_file.unwrap_or([
+            cleaner.num_positions,
+            cleaner.num_tex_coords,
+            cleaner.num_normals,
+        ]);
         let Some(face) = lines.text().lines().find_map(|line| line.strip_prefix("f ")) else {
             continue;
         };
         let beyond = face
             .split_ascii_whitespace()
             .flat_map(|corner| corner.split('/').zip(num))
-            .find(|(index, num)| index.parse::<i128>().is_ok_and(|i| i > i128::from(*num) || -i > i128::from(*num)));
-        found = beyond.map(|(index, num)| lines.place().refuse(format!("index {index} is out of range: {num} exist")));
+            .find(|(index, num)| {
+                index.parse::<i128>().is_ok_and(|i| i > i128::from(*num) || -i > i128::from(*num))
+            });
+        found = beyond.map(|(index, num)| {
+            lines.place().refuse(format!("index {index} is out of range: {num} exist"))
+        });
     }
     found
 }
@@ -40,7 +50,8 @@ pub(in crate::load) fn bad_number(source: &dyn Source) -> Option<Error> {
     while lines.advance().ok()? {
         let text = lines.text();
         let (keyword, rest) = text.split_once(' ').unwrap_or_default();
-        let numbers: Vec<f32> = rest.split_ascii_whitespace().map(|n| n.parse().unwrap_or(f32::NAN)).collect();
+        let numbers: Vec<f32> =
+            rest.split_ascii_whitespace().map(|n| n.parse().unwrap_or(f32::NAN)).collect();
         let is_good = match keyword {
             "v" => {
                 let w = numbers.get(3).copied().unwrap_or(1.0);
@@ -51,12 +62,16 @@ pub(in crate::load) fn bad_number(source: &dyn Source) -> Option<Error> {
             _ => true,
         };
         if !is_good {
-            return Some(lines.place().refuse(format!("'{}' is not finite or too large", text.trim())));
+            return Some(
+                lines.place().refuse(format!("'{}' is not finite or too large", text.trim())),
+            );
         }
     }
     None
 }
 
-fn lines<'a>(source: &'a dyn Source) -> Result<CleanLines<Box<dyn std::io::BufRead + 'a>, ObjLines<'a>>> {
+fn lines<'a>(
+    source: &'a dyn Source,
+) -> Result<CleanLines<Box<dyn std::io::BufRead + 'a>, ObjLines<'a>>> {
     Ok(CleanLines::new(source.reader()?, source.path(), ObjLines::new(u64::MAX, None)))
 }

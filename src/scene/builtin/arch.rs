@@ -1,7 +1,8 @@
 //! The mesh of an arch: a rectangle swept up a pillar, over a half circle and down again.
 //!
-//! The circle's points come from `((1 - t²) / (1 + t²), 2t / (1 + t²))`, which needs no sine and so gives the same mesh
-//! on every machine. `u` runs along the way, so that courses of stones lie level in the pillars and radial above.
+//! The circle's points come from `((1 - t²) / (1 + t²), 2t / (1 + t²))`, which needs no sine and so
+//! gives the same mesh on every machine. `u` runs along the way, so that courses of stones lie
+//! level in the pillars and radial above.
 
 use crate::scene::mesh::Mesh;
 use glam::{Vec2, Vec3};
@@ -21,7 +22,8 @@ pub(super) struct Arch {
     pub(super) repeat: f32,
 }
 
-/// A stop on the way: a point of the inner face, the direction away from the opening, and the way so far.
+/// A stop on the way: a point of the inner face, the direction away from the opening, and the way
+/// so far.
 struct Stop {
     inner: Vec2,
     outwards: Vec2,
@@ -33,8 +35,15 @@ impl Arch {
     pub(super) fn mesh(&self) -> Mesh {
         let stops = self.stops();
         let (front, back) = (0.5 * self.depth, -0.5 * self.depth);
-        let corners = [(0.0, front), (self.thickness, front), (self.thickness, back), (0.0, back), (0.0, front)];
-        let (mut positions, mut tex_coords, mut normals, mut triangles) = (vec![], vec![], vec![], vec![]);
+        let corners = [
+            (0.0, front),
+            (self.thickness, front),
+            (self.thickness, back),
+            (0.0, back),
+            (0.0, front),
+        ];
+        let (mut positions, mut tex_coords, mut normals, mut triangles) =
+            (vec![], vec![], vec![], vec![]);
         let mut around = 0.0;
         for (face, pair) in corners.windows(2).enumerate() {
             let [from, to] = [pair[0], pair[1]];
@@ -48,7 +57,8 @@ impl Arch {
                     normals.push([Vec3::Z, radial, Vec3::NEG_Z, -radial][face]);
                 }
                 if stop.way > 0.0 {
-                    triangles.extend([[first - 2, first, first + 1], [first - 2, first + 1, first - 1]]);
+                    triangles
+                        .extend([[first - 2, first, first + 1], [first - 2, first + 1, first - 1]]);
                 }
             }
             around += width;

@@ -1,7 +1,8 @@
-//! The scene that is drawn when none is given: a cobbled street to the horizon and a stone arch that stands on it.
+//! The scene that is drawn when none is given: a cobbled street to the horizon and a stone arch
+//! that stands on it.
 //!
-//! Nothing is read: textures and meshes are made at start, from integer hashes and arithmetic that rounds alike on every
-//! machine.
+//! Nothing is read: textures and meshes are made at start, from integer hashes and arithmetic that
+//! rounds alike on every machine.
 
 mod arch;
 mod noise;
@@ -26,7 +27,8 @@ const HORIZON: f32 = 1500.0;
 
 /// The embedded scene: cobbles and an arch under a low sun.
 pub fn builtin() -> Scene {
-    let (street, arch) = rayon::join(|| surface(&street_style(), 1024, 0.06), || surface(&arch_style(), 512, 0.05));
+    let (street, arch) =
+        rayon::join(|| surface(&street_style(), 1024, 0.06), || surface(&arch_style(), 512, 0.05));
     let materials = vec![
         Material {
             name: "street".into(),
@@ -64,7 +66,12 @@ pub fn builtin() -> Scene {
 
 fn surface(style: &Style, size: u32, relief_depth: f32) -> Option<Arc<Surface>> {
     let (albedo, height) = Quarry::new(style).maps(size);
-    let maps = SurfaceMaps { albedo: Some(albedo), height: Some(height), relief_depth, ..SurfaceMaps::default() };
+    let maps = SurfaceMaps {
+        albedo: Some(albedo),
+        height: Some(height),
+        relief_depth,
+        ..SurfaceMaps::default()
+    };
     let surface = Surface::new(maps).expect("maps made here have a valid size");
     Some(Arc::new(surface))
 }
@@ -134,7 +141,11 @@ fn street_mesh() -> Mesh {
         }
     }
     let normals = vec![Vec3::Y; positions.len()];
-    Mesh { name: "street".into(), material: 0, ..Mesh::new(positions, tex_coords, normals, triangles) }
+    Mesh {
+        name: "street".into(),
+        material: 0,
+        ..Mesh::new(positions, tex_coords, normals, triangles)
+    }
 }
 
 fn arch_mesh() -> Mesh {
@@ -171,7 +182,11 @@ mod tests {
                     mesh.name
                 );
                 let [u, v] = mesh.tangents[triangle[0] as usize];
-                assert!(u.cross(v).dot(mesh.normals[triangle[0] as usize]) > 0.0, "{} is not mirrored", mesh.name);
+                assert!(
+                    u.cross(v).dot(mesh.normals[triangle[0] as usize]) > 0.0,
+                    "{} is not mirrored",
+                    mesh.name
+                );
             }
         }
     }

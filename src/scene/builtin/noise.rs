@@ -1,4 +1,5 @@
-//! Repeating noise from an integer hash: the same bits on every machine, since it needs only sums and products.
+//! Repeating noise from an integer hash: the same bits on every machine, since it needs only sums
+//! and products.
 
 /// A hash of a lattice point (a finaliser of `MurmurHash3`'s kind over a weighted sum).
 pub(super) fn hash(x: i32, y: i32, seed: u32) -> u32 {
@@ -20,7 +21,8 @@ const SIDE: usize = 256;
 const COARSEST: i32 = 4;
 const NUM_OCTAVES: u32 = 5;
 
-/// A table of fractal noise that repeats over `0..1`; looked up at whole multiples, finer noise repeats too.
+/// A table of fractal noise that repeats over `0..1`; looked up at whole multiples, finer noise
+/// repeats too.
 pub(super) struct Noise {
     table: Vec<f32>,
 }
@@ -30,7 +32,8 @@ impl Noise {
     pub(super) fn new(seed: u32) -> Self {
         let texel = |i: usize| {
             let uv = [i % SIDE, i / SIDE].map(|x| x as f32 / SIDE as f32);
-            let octaves = (0..NUM_OCTAVES).map(|n| value(uv, COARSEST << n, seed + n) / (1 << n) as f32);
+            let octaves =
+                (0..NUM_OCTAVES).map(|n| value(uv, COARSEST << n, seed + n) / (1 << n) as f32);
             octaves.sum::<f32>() / (2.0 - 1.0 / (1 << (NUM_OCTAVES - 1)) as f32)
         };
         Self { table: (0..SIDE * SIDE).map(texel).collect() }
@@ -55,7 +58,9 @@ fn value([u, v]: [f32; 2], period: i32, seed: u32) -> f32 {
     let (x, y) = (u * period as f32, v * period as f32);
     let (i, j) = (x.floor(), y.floor());
     let (s, t) = (smooth(x - i), smooth(y - j));
-    let corner = |di: i32, dj: i32| unit((i as i32 + di).rem_euclid(period), (j as i32 + dj).rem_euclid(period), seed);
+    let corner = |di: i32, dj: i32| {
+        unit((i as i32 + di).rem_euclid(period), (j as i32 + dj).rem_euclid(period), seed)
+    };
     let low = mix(corner(0, 0), corner(1, 0), s);
     let high = mix(corner(0, 1), corner(1, 1), s);
     mix(low, high, t)

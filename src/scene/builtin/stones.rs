@@ -1,8 +1,8 @@
 //! Stones in a bond, as a colour and a height map.
 //!
-//! A [`Bond`] says to which stone a place belongs and how far its edge is; a [`Style`] makes colour and height of that:
-//! a rounded top that falls to a deep joint, a tint for every stone, grain, stains, and a little shade in the joints so
-//! that the picture holds without lighting.
+//! A [`Bond`] says to which stone a place belongs and how far its edge is; a [`Style`] makes colour
+//! and height of that: a rounded top that falls to a deep joint, a tint for every stone, grain,
+//! stains, and a little shade in the joints so that the picture holds without lighting.
 
 use super::noise::{Noise, hash, mix, step, unit};
 use crate::texture::{ColorImage, HeightImage};
@@ -16,7 +16,8 @@ const SPECKLES: f32 = 640.0;
 pub(super) enum Bond {
     /// Cobbles: Voronoi cells of shifted rows along u.
     Cobbles,
-    /// Blocks: courses side by side along u, blocks one after another along v, each course shifted by half a block.
+    /// Blocks: courses side by side along u, blocks one after another along v, each course shifted
+    /// by half a block.
     Blocks,
 }
 
@@ -51,7 +52,8 @@ struct Stone {
     tint: [f32; 3],
 }
 
-/// The stone at a place, the distance to the middle of the nearest joint, and the place relative to the stone's middle.
+/// The stone at a place, the distance to the middle of the nearest joint, and the place relative to
+/// the stone's middle.
 struct Spot<'a> {
     stone: &'a Stone,
     edge: f32,
@@ -76,7 +78,9 @@ impl<'a> Quarry<'a> {
     pub(super) fn maps(&self, size: u32) -> (ColorImage, HeightImage) {
         let num = (size * size) as usize;
         let (mut colors, mut heights) = (vec![[0; 3]; num], vec![0; num]);
-        let rows = colors.par_chunks_exact_mut(size as usize).zip(heights.par_chunks_exact_mut(size as usize));
+        let rows = colors
+            .par_chunks_exact_mut(size as usize)
+            .zip(heights.par_chunks_exact_mut(size as usize));
         rows.enumerate().for_each(|(y, (colors, heights))| {
             for (x, (color, height)) in colors.iter_mut().zip(heights).enumerate() {
                 let bits = |x: f32| (x.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16;
@@ -99,14 +103,21 @@ impl<'a> Quarry<'a> {
         let edge = spot.edge + (lumps - 0.5) * 0.3 * shoulder;
         let inside = ((edge - joint) / shoulder).clamp(0.0, 1.0);
         let dome = (inside * (2.0 - inside)).sqrt();
-        let tilt = (spot.offset[0] * spot.stone.tilt[0] + spot.offset[1] * spot.stone.tilt[1]) / repeat;
+        let tilt =
+            (spot.offset[0] * spot.stone.tilt[0] + spot.offset[1] * spot.stone.tilt[1]) / repeat;
         let top = 0.97 - 0.14 * spot.stone.level + tilt - roughness * (0.7 * lumps + 0.3 * grain);
         let bed = 0.05 + 0.16 * self.noise.at(uv, 7, 3);
         let height = mix(bed, mix(bed, top, 0.22 + 0.78 * dome), step(0.0, 0.12, inside));
         (self.color(uv, spot.stone, inside, [grain, lumps]), height)
     }
 
-    fn color(&self, uv: [f32; 2], stone: &Stone, inside: f32, [grain, lumps]: [f32; 2]) -> [f32; 3] {
+    fn color(
+        &self,
+        uv: [f32; 2],
+        stone: &Stone,
+        inside: f32,
+        [grain, lumps]: [f32; 2],
+    ) -> [f32; 3] {
         let stains = self.noise.at(uv, 1, 4);
         let [x, y] = uv.map(|x| (x * SPECKLES) as i32);
         let speckle = unit(x, y, self.style.seed);
@@ -140,7 +151,8 @@ impl<'a> Quarry<'a> {
             let (column, row) = (i + n % 5 - 2, j + n / 5 - 1);
             let stone = self.stone(column, row);
             let shift = if row.rem_euclid(2) == 1 { 1.0 } else { 0.5 };
-            let place = [column as f32 + shift + stone.jitter[0], row as f32 + 0.5 + stone.jitter[1]];
+            let place =
+                [column as f32 + shift + stone.jitter[0], row as f32 + 0.5 + stone.jitter[1]];
             let d = [place[0] * w - p[0], place[1] * h - p[1]];
             (d, d[0] * d[0] + d[1] * d[1], stone)
         };
@@ -148,12 +160,16 @@ impl<'a> Quarry<'a> {
         let nearest = sites.iter().fold(sites[0], |a, b| if b.1 < a.1 { *b } else { a });
         // Sites more than twice a cell away share no border with the nearest one.
         let reach = 4.0 * w.max(h) * w.max(h);
-        let edge = sites.iter().filter(|site| site.1 > nearest.1 && site.1 < reach).fold(f32::MAX, |edge, (d, ..)| {
-            let across = [d[0] - nearest.0[0], d[1] - nearest.0[1]];
-            let length = (across[0] * across[0] + across[1] * across[1]).sqrt();
-            let to_border = (d[0] + nearest.0[0]) * 0.5 * across[0] + (d[1] + nearest.0[1]) * 0.5 * across[1];
-            smooth_min(edge, to_border / length.max(1e-6), 0.22 * h)
-        });
+        let edge = sites.iter().filter(|site| site.1 > nearest.1 && site.1 < reach).fold(
+            f32::MAX,
+            |edge, (d, ..)| {
+                let across = [d[0] - nearest.0[0], d[1] - nearest.0[1]];
+                let length = (across[0] * across[0] + across[1] * across[1]).sqrt();
+                let to_border = (d[0] + nearest.0[0]) * 0.5 * across[0]
+                    + (d[1] + nearest.0[1]) * 0.5 * across[1];
+                smooth_min(edge, to_border / length.max(1e-6), 0.22 * h)
+            },
+        );
         Spot { stone: nearest.2, edge, offset: nearest.0.map(|d| -d) }
     }
 

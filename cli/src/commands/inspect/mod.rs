@@ -20,7 +20,8 @@ pub(crate) fn run(mut options: InspectOptions) -> Result<ExitCode, Refusal> {
         return Err("--json and --output - both write to stdout".into());
     }
     let subject = Subject::of(&options)?;
-    let seen = inspect::pixel(&subject.scene, &subject.settings, subject.pixel).map_err(pixel_refusal)?;
+    let seen =
+        inspect::pixel(&subject.scene, &subject.settings, subject.pixel).map_err(pixel_refusal)?;
     if let (Some(path), Some(format)) = (&options.output, format) {
         let picture = draw(&seen, &subject.names(&seen), subject.layers).into_frame();
         output::write(path, &picture.encode(format)?)?;
@@ -28,14 +29,17 @@ pub(crate) fn run(mut options: InspectOptions) -> Result<ExitCode, Refusal> {
             return Ok(ExitCode::SUCCESS);
         }
     }
-    let text = if options.json { numbers::json(&seen, &subject)? } else { numbers::text(&seen, &subject) };
+    let text =
+        if options.json { numbers::json(&seen, &subject)? } else { numbers::text(&seen, &subject) };
     output::print(text.as_bytes())?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn pixel_refusal(error: Error) -> Refusal {
     match error {
-        Error::Scene { part, reason } if part.starts_with("pixel ") => format!("--{part}: {reason}").into(),
+        Error::Scene { part, reason } if part.starts_with("pixel ") => {
+            format!("--{part}: {reason}").into()
+        }
         _ => error.into(),
     }
 }

@@ -43,7 +43,9 @@ pub(crate) fn text(seen: &Inspection, subject: &Subject) -> String {
     push_ray(&mut text, &seen.ray, seen);
     push_corners(&mut text, seen);
     for (formula, derivatives) in [(2, Derivatives::Flat), (3, Derivatives::Relief)] {
-        seen.readings.iter().for_each(|reading| push_formula(&mut text, formula, derivatives, reading));
+        seen.readings
+            .iter()
+            .for_each(|reading| push_formula(&mut text, formula, derivatives, reading));
     }
     push_sets(&mut text, &seen.sets, subject);
     push_cut(&mut text, &seen.cut);
@@ -60,14 +62,22 @@ fn push_ray(text: &mut String, ray: &Ray, seen: &Inspection) {
         "  moves by               u {du:.6}  v {dv:.6} down to the relief depth {:.4}",
         seen.relief_depth
     );
-    let _ = writeln!(text, "                         ({tu:.1} and {tv:.1} texels of level {})", seen.sets.level);
-    let _ = writeln!(text, "  meets the relief at    u {hu:.6}  v {hv:.6}, {hit_depth:.4} of the depth");
+    let _ = writeln!(
+        text,
+        "                         ({tu:.1} and {tv:.1} texels of level {})",
+        seen.sets.level
+    );
+    let _ = writeln!(
+        text,
+        "  meets the relief at    u {hu:.6}  v {hv:.6}, {hit_depth:.4} of the depth"
+    );
 }
 
 fn push_corners(text: &mut String, seen: &Inspection) {
     let [left, right] = seen.readings[0].row;
     let [upper, lower] = seen.readings[0].column;
-    let _ = writeln!(text, "\ntexture coordinates in the pixel's 2x2 quad, and what the relief adds");
+    let _ =
+        writeln!(text, "\ntexture coordinates in the pixel's 2x2 quad, and what the relief adds");
     let corners = [("(x,y)    in its row   ", left, 0), ("(x+1,y)  in its row   ", right, 1)];
     let of_column = [("(x,y)    in its column", upper, 0), ("(x,y+1)  in its column", lower, 2)];
     for (name, Corner { uv, offset }, letters) in corners.into_iter().chain(of_column) {
@@ -85,19 +95,24 @@ fn push_formula(text: &mut String, formula: u32, derivatives: Derivatives, readi
     };
     let _ = writeln!(text, "\nformula ({formula}) as {}, in repeats", word(&reading.formulas));
     let values = [projected.dx[0], projected.dx[1], projected.dy[0], projected.dy[1]];
-    for ((name, side), value) in ["du/dx", "dv/dx", "du/dy", "dv/dy"].iter().zip(sides).zip(values) {
+    for ((name, side), value) in ["du/dx", "dv/dx", "du/dy", "dv/dy"].iter().zip(sides).zip(values)
+    {
         let _ = writeln!(text, "  {name} = {side:<30} = {value:+.9}");
     }
     let f = if is_printed == 1 { "F = (Ux Vy + Uy Vx)^2" } else { "F = (Ux Vy - Uy Vx)^2" };
     let Ellipse { a, b, c, f: right } = projected.conic;
     let _ = writeln!(text, "formula (1) of it, in texels");
-    let sides = [("A = Vx^2 + Vy^2", a), ("B = -2 (Ux Vx + Uy Vy)", b), ("C = Ux^2 + Uy^2", c), (f, right)];
+    let sides =
+        [("A = Vx^2 + Vy^2", a), ("B = -2 (Ux Vx + Uy Vy)", b), ("C = Ux^2 + Uy^2", c), (f, right)];
     for (side, value) in sides {
         let _ = writeln!(text, "  {side:<38} = {value:.6}");
     }
     let [short, long] = projected.half_axes;
     let area = projected.area;
-    let _ = writeln!(text, "  widened for filtering: half axes {long:.2} and {short:.2}, area {area:.1} texels");
+    let _ = writeln!(
+        text,
+        "  widened for filtering: half axes {long:.2} and {short:.2}, area {area:.1} texels"
+    );
 }
 
 fn push_sets(text: &mut String, sets: &Sets, subject: &Subject) {
@@ -105,7 +120,11 @@ fn push_sets(text: &mut String, sets: &Sets, subject: &Subject) {
     let FootprintRule { derivatives, formulas, .. } = subject.settings.filter.footprint_rule();
     let (of, reading) = (word(&derivatives), word(&formulas));
     let counted = sets.counted_twice.iter().map(|(_, count)| count - 1).sum::<u32>();
-    let _ = writeln!(text, "\ntexels of level {} ({w}x{h} a repeat), {of} derivatives as {reading}", sets.level);
+    let _ = writeln!(
+        text,
+        "\ntexels of level {} ({w}x{h} a repeat), {of} derivatives as {reading}",
+        sets.level
+    );
     for (name, num) in [
         ("T, in the ellipse around the hit", sets.all.len()),
         ("T_vis, visible", sets.visible.len()),
@@ -122,9 +141,14 @@ fn push_cut(text: &mut String, cut: &Cut) {
     let [entry, exit] = cut.ellipse;
     let [seen, all] = cut.num_seen();
     let length: f64 = cut.points.iter().map(|point| point.visible).sum();
-    let _ = writeln!(text, "\nthe cut along the view, in texels from where the ray meets the polygon");
+    let _ =
+        writeln!(text, "\nthe cut along the view, in texels from where the ray meets the polygon");
     let _ = writeln!(text, "  the ellipse of formula (2) reaches from {entry:.2} to {exit:.2}");
-    let _ = writeln!(text, "  the ray meets the relief at {:.2}, {:.4} of the depth", cut.hit[0], cut.hit[1]);
+    let _ = writeln!(
+        text,
+        "  the ray meets the relief at {:.2}, {:.4} of the depth",
+        cut.hit[0], cut.hit[1]
+    );
     let _ = writeln!(
         text,
         "  rows that make the horizon rise: {seen} of {all}; their visible lengths add up to {length:.2}"

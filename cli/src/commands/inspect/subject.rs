@@ -51,7 +51,9 @@ impl Subject {
     }
 
     pub(crate) fn surface(&self, seen: &Inspection) -> String {
-        let or_number = |name: &str, index: usize| if name.is_empty() { index.to_string() } else { name.to_owned() };
+        let or_number = |name: &str, index: usize| {
+            if name.is_empty() { index.to_string() } else { name.to_owned() }
+        };
         let mesh = or_number(&self.scene.meshes[seen.mesh].name, seen.mesh);
         let material = or_number(&self.scene.materials[seen.material].name, seen.material);
         format!("mesh {mesh}, triangle {}, material {material}", seen.triangle)

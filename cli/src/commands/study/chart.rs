@@ -51,14 +51,19 @@ fn draw(study: &Study, axis: &Axis, svg: &mut String) -> Result<(), Box<dyn std:
         .margin_right(24)
         .x_label_area_size(42)
         .y_label_area_size(58)
-        .build_cartesian_2d((left..right).log_scale().with_key_points(times(left, right)), bottom..top)?;
+        .build_cartesian_2d(
+            (left..right).log_scale().with_key_points(times(left, right)),
+            bottom..top,
+        )?;
     let text = ("sans-serif", 14).into_font().color(&INK);
     chart
         .configure_mesh()
         .x_desc("milliseconds a frame")
         .y_desc(axis.title)
         .x_label_formatter(&|ms| if *ms < 1.0 { format!("{ms:.2}") } else { format!("{ms:.0}") })
-        .y_label_formatter(&|value| if high < 1.5 { format!("{value:.2}") } else { format!("{value:.0}") })
+        .y_label_formatter(&|value| {
+            if high < 1.5 { format!("{value:.2}") } else { format!("{value:.0}") }
+        })
         .label_style(text.clone())
         .axis_style(INK)
         .bold_line_style(GRID)
@@ -72,13 +77,18 @@ fn draw(study: &Study, axis: &Axis, svg: &mut String) -> Result<(), Box<dyn std:
     for ((&i, &place), offset) in shown.iter().zip(&places).zip(label_offsets(&places)) {
         let color = if front.contains(&i) { FRONT } else { POINT };
         area.draw(&Circle::new(place, 5, color.filled()))?;
-        area.draw(&Text::new((i + 1).to_string(), (place.0 + offset.0, place.1 + offset.1), text.clone()))?;
+        area.draw(&Text::new(
+            (i + 1).to_string(),
+            (place.0 + offset.0, place.1 + offset.1),
+            text.clone(),
+        ))?;
     }
     area.present()?;
     Ok(())
 }
 
-/// Where labels stand from their points, each where no point and no label before it is, if there is such a place.
+/// Where labels stand from their points, each where no point and no label before it is, if there is
+/// such a place.
 fn label_offsets(places: &[(i32, i32)]) -> Vec<(i32, i32)> {
     const SIZE: (i32, i32) = (16, 14);
     let near = [(7, -14), (7, 2), (-22, -14), (-22, 2), (-7, -22), (-7, 8)];
@@ -88,9 +98,11 @@ fn label_offsets(places: &[(i32, i32)]) -> Vec<(i32, i32)> {
     let choose = |&(x, y): &(i32, i32)| {
         let is_free = |&(dx, dy): &(i32, i32)| {
             let (left, top) = (x + dx, y + dy);
-            let over_label = |c: &(i32, i32)| (left - c.0).abs() < SIZE.0 && (top - c.1).abs() < SIZE.1;
+            let over_label =
+                |c: &(i32, i32)| (left - c.0).abs() < SIZE.0 && (top - c.1).abs() < SIZE.1;
             let over_point = |p: &(i32, i32)| {
-                (left - 5..left + SIZE.0 + 5).contains(&p.0) && (top - 4..top + SIZE.1 + 4).contains(&p.1)
+                (left - 5..left + SIZE.0 + 5).contains(&p.0)
+                    && (top - 4..top + SIZE.1 + 4).contains(&p.1)
             };
             !corners.iter().any(over_label) && !places.iter().any(over_point)
         };
@@ -103,7 +115,8 @@ fn label_offsets(places: &[(i32, i32)]) -> Vec<(i32, i32)> {
 
 /// Times that the axis names: 1, 2 and 5 of each power of ten between two.
 fn times(left: f64, right: f64) -> Vec<f64> {
-    let powers = (left.log10().floor() as i32..=right.log10().ceil() as i32).map(|power| 10.0_f64.powi(power));
+    let powers = (left.log10().floor() as i32..=right.log10().ceil() as i32)
+        .map(|power| 10.0_f64.powi(power));
     let steps = powers.flat_map(|power| [power, 2.0 * power, 5.0 * power]);
     steps.filter(|ms| (left..=right).contains(ms)).collect()
 }
@@ -120,7 +133,11 @@ mod tests {
 
     #[test]
     fn finite_trials_are_numbered_points() {
-        let study = crate::commands::study::gather::tests::study(&[(10.0, 30.0), (20.0, f64::INFINITY), (400.0, 50.0)]);
+        let study = crate::commands::study::gather::tests::study(&[
+            (10.0, 30.0),
+            (20.0, f64::INFINITY),
+            (400.0, 50.0),
+        ]);
         let axis = Axis { title: "PSNR", value: |outcome| outcome.psnr, is_falling: false };
         let svg = svg(&study, &axis).unwrap();
         assert_eq!(svg.matches("<circle").count(), 2, "{svg}");
@@ -137,9 +154,13 @@ mod tests {
     fn labels_of_crowded_points_do_not_overlap() {
         let places = [(100, 100), (100, 101), (103, 98), (109, 92), (200, 100)];
         let offsets = label_offsets(&places);
-        let corners: Vec<_> = places.iter().zip(&offsets).map(|(p, o)| (p.0 + o.0, p.1 + o.1)).collect();
+        let corners: Vec<_> =
+            places.iter().zip(&offsets).map(|(p, o)| (p.0 + o.0, p.1 + o.1)).collect();
         for (i, a) in corners.iter().enumerate() {
-            assert!(corners[..i].iter().all(|b| (a.0 - b.0).abs() >= 16 || (a.1 - b.1).abs() >= 14), "{corners:?}");
+            assert!(
+                corners[..i].iter().all(|b| (a.0 - b.0).abs() >= 16 || (a.1 - b.1).abs() >= 14),
+                "{corners:?}"
+            );
         }
         assert_eq!(offsets[4], (7, -14), "alone a label stands at the upper right");
     }

@@ -20,7 +20,11 @@ pub(crate) struct Crop {
 pub(crate) fn choose(truth: &Frame, frames: &[Frame]) -> Result<Vec<Crop>, basrelief::Error> {
     let [width, height] = [truth.width as usize, truth.height as usize];
     let side = |whole: usize| (whole / 8).max(8).min(whole);
-    let areas = furthest_apart(&spread(frames, width * height), [width, height], [side(width), side(height)]);
+    let areas = furthest_apart(
+        &spread(frames, width * height),
+        [width, height],
+        [side(width), side(height)],
+    );
     let cut_all = |area: [usize; 4]| {
         let png = |frame: &Frame| cut(frame, area).encode(Format::Png);
         let pngs: Result<_, _> = frames.iter().map(png).collect();
@@ -46,13 +50,20 @@ fn spread(frames: &[Frame], num_pixels: usize) -> Vec<f64> {
     sums.into_iter().map(|[sum, squares]| (squares - sum * sum / num).max(0.0) / num).collect()
 }
 
-/// The areas of a size, on a grid of a quarter of it, with the greatest sums. None shares rows with one before it, since
-/// what differs at a distance differs all along the skyline.
-fn furthest_apart(spread: &[f64], [width, height]: [usize; 2], [w, h]: [usize; 2]) -> Vec<[usize; 4]> {
+/// The areas of a size, on a grid of a quarter of it, with the greatest sums. None shares rows with
+/// one before it, since what differs at a distance differs all along the skyline.
+fn furthest_apart(
+    spread: &[f64],
+    [width, height]: [usize; 2],
+    [w, h]: [usize; 2],
+) -> Vec<[usize; 4]> {
     let rows = (0..=height - h).step_by((h / 4).max(1));
-    let places = rows.flat_map(|y| (0..=width - w).step_by((w / 4).max(1)).map(move |x| [x, y, w, h]));
+    let places =
+        rows.flat_map(|y| (0..=width - w).step_by((w / 4).max(1)).map(move |x| [x, y, w, h]));
     let sum = |[x, y, ..]: [usize; 4]| {
-        (y..y + h).map(|row| spread[row * width + x..row * width + x + w].iter().sum::<f64>()).sum::<f64>()
+        (y..y + h)
+            .map(|row| spread[row * width + x..row * width + x + w].iter().sum::<f64>())
+            .sum::<f64>()
     };
     let mut places: Vec<([usize; 4], f64)> = places.map(|area| (area, sum(area))).collect();
     places.sort_by(|a, b| b.1.total_cmp(&a.1));

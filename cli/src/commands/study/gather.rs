@@ -52,7 +52,12 @@ pub(crate) struct Outcome {
 }
 
 /// Draws and measures everything.
-pub(crate) fn run(scene: Scene, settings: &Settings, plan: Plan, progress: &Progress) -> Result<Study, Refusal> {
+pub(crate) fn run(
+    scene: Scene,
+    settings: &Settings,
+    plan: Plan,
+    progress: &Progress,
+) -> Result<Study, Refusal> {
     let num_triangles = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
     progress.stage(format!("drawing the truth, {} rays a pixel", plan.truth_samples));
     let start = Instant::now();
@@ -99,7 +104,12 @@ fn draw(renderer: &mut Renderer, repeat: u32) -> (Frame, f64) {
     (over_black(frame), times[(times.len() - 1) / 2])
 }
 
-fn measured(trial: &Trial, ms: f64, frame: &Frame, truth: &Picture) -> Result<Outcome, basrelief::Error> {
+fn measured(
+    trial: &Trial,
+    ms: f64,
+    frame: &Frame,
+    truth: &Picture,
+) -> Result<Outcome, basrelief::Error> {
     let picture = Picture::from(frame);
     let difference = compare(truth, &picture)?;
     let seen = flip(truth, &picture, PIXELS_PER_DEGREE)?;
@@ -130,7 +140,8 @@ fn milliseconds(start: Instant) -> f64 {
 }
 
 impl Study {
-    /// The trials of which no other is both faster and better, by a quality that grows, from the fastest to the best.
+    /// The trials of which no other is both faster and better, by a quality that grows, from the
+    /// fastest to the best.
     pub(crate) fn front(&self, quality: impl Fn(&Outcome) -> f64) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.outcomes.len()).collect();
         let key = |i: usize| (self.outcomes[i].ms, -quality(&self.outcomes[i]));
@@ -178,8 +189,14 @@ pub(crate) mod tests {
 
     #[test]
     fn the_front_holds_what_nothing_beats() {
-        let study =
-            study(&[(10.0, 30.0), (20.0, 25.0), (5.0, 20.0), (40.0, 50.0), (40.0, 45.0), (50.0, f64::INFINITY)]);
+        let study = study(&[
+            (10.0, 30.0),
+            (20.0, 25.0),
+            (5.0, 20.0),
+            (40.0, 50.0),
+            (40.0, 45.0),
+            (50.0, f64::INFINITY),
+        ]);
         assert_eq!(study.front(|outcome| outcome.psnr), [2, 0, 3, 5]);
         assert_eq!(study.front(|outcome| -outcome.flip), [2, 0, 3, 5]);
     }

@@ -13,8 +13,10 @@ pub(crate) struct Machine {
 impl Machine {
     /// This machine, with the threads of the current pool.
     pub(crate) fn here() -> Self {
-        let system = System::new_with_specifics(RefreshKind::nothing().with_cpu(CpuRefreshKind::nothing()));
-        let brand = system.cpus().first().map(|cpu| cpu.brand().trim().to_owned()).unwrap_or_default();
+        let system =
+            System::new_with_specifics(RefreshKind::nothing().with_cpu(CpuRefreshKind::nothing()));
+        let brand =
+            system.cpus().first().map(|cpu| cpu.brand().trim().to_owned()).unwrap_or_default();
         let processor = if brand.is_empty() { std::env::consts::ARCH.to_owned() } else { brand };
         let system = System::long_os_version().unwrap_or_else(|| std::env::consts::OS.to_owned());
         Self { processor, system, threads: rayon::current_num_threads() }

@@ -27,11 +27,14 @@ pub(crate) fn run(mut options: StudyOptions) -> Result<ExitCode, Refusal> {
     let progress = Progress::new(options.quiet);
     let scene = load(&options, &settings, &progress)?;
     let folder = &options.output;
-    std::fs::create_dir_all(folder).map_err(|e| Refusal::file(folder, format_args!("cannot be made: {e}")))?;
+    std::fs::create_dir_all(folder)
+        .map_err(|e| Refusal::file(folder, format_args!("cannot be made: {e}")))?;
     let [page_path, csv_path] = ["index.html", "study.csv"].map(|name| folder.join(name));
     [&page_path, &csv_path].into_iter().try_for_each(|path| output::check(path))?;
-    let plan = gather::Plan { trials, truth_samples: options.truth_samples, repeat: options.repeat };
-    let study = thread_pool(options.threads)?.install(|| gather::run(scene, &settings, plan, &progress))?;
+    let plan =
+        gather::Plan { trials, truth_samples: options.truth_samples, repeat: options.repeat };
+    let study =
+        thread_pool(options.threads)?.install(|| gather::run(scene, &settings, plan, &progress))?;
     output::write(&csv_path, csv::table(&study).as_bytes())?;
     output::write(&page_path, page::html(&study)?.as_bytes())?;
     progress.say(&format!("wrote {} and {}", page_path.display(), csv_path.display()));
@@ -50,7 +53,11 @@ fn settings_of(options: &StudyOptions, of_file: &SettingsOptions) -> Result<Sett
     Ok(settings)
 }
 
-fn load(options: &StudyOptions, settings: &Settings, progress: &Progress) -> Result<Scene, Refusal> {
+fn load(
+    options: &StudyOptions,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Scene, Refusal> {
     let loaded = options.scene.load(settings, settings.lighting == Lighting::Lit, progress)?;
     loaded.choices.iter().for_each(|choice| progress.say(choice));
     loaded.warnings.iter().for_each(|warning| progress.warn(warning));

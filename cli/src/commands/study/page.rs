@@ -10,7 +10,8 @@ use base64::prelude::BASE64_STANDARD;
 use basrelief::{SIMD_LEVEL, metrics};
 
 const PSNR: Axis = Axis { title: "PSNR, dB", value: |outcome| outcome.psnr, is_falling: false };
-const FLIP: Axis = Axis { title: "FLIP, less is better", value: |outcome| outcome.flip, is_falling: true };
+const FLIP: Axis =
+    Axis { title: "FLIP, less is better", value: |outcome| outcome.flip, is_falling: true };
 
 #[derive(Template)]
 #[template(path = "study.html")]
@@ -76,7 +77,9 @@ pub(crate) fn html(study: &Study) -> Result<String, Refusal> {
         error_png: data_uri(&outcome.error_png),
         flip_png: data_uri(&outcome.flip_png),
     };
-    let name = |name: &str| study.outcomes.iter().position(|outcome| outcome.trial.name == name).unwrap_or(0);
+    let name = |name: &str| {
+        study.outcomes.iter().position(|outcome| outcome.trial.name == name).unwrap_or(0)
+    };
     let page = Page {
         width: study.settings.width,
         height: study.settings.height,
@@ -98,7 +101,10 @@ pub(crate) fn html(study: &Study) -> Result<String, Refusal> {
 }
 
 fn chart_view(title: &'static str, study: &Study, axis: &Axis) -> Result<Chart, Refusal> {
-    let names = axis.front(study).into_iter().map(|i| format!("{} ({})", study.outcomes[i].trial.name, i + 1));
+    let names = axis
+        .front(study)
+        .into_iter()
+        .map(|i| format!("{} ({})", study.outcomes[i].trial.name, i + 1));
     Ok(Chart { title, svg: chart::svg(study, axis)?, front: names.collect::<Vec<_>>().join(", ") })
 }
 
@@ -119,7 +125,12 @@ fn crop_views(study: &Study) -> Vec<CropView> {
 fn heat_stops() -> Result<String, Refusal> {
     let steps: Vec<f32> = (0..=16).map(|i| i as f32 / 16.0).collect();
     let colors = metrics::errors_as_colors(&steps, steps.len() as u32, 1.0)?;
-    Ok(colors.to_rgb8().iter().map(|[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}")).collect::<Vec<_>>().join(","))
+    Ok(colors
+        .to_rgb8()
+        .iter()
+        .map(|[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}"))
+        .collect::<Vec<_>>()
+        .join(","))
 }
 
 fn facts(study: &Study) -> Vec<(&'static str, String)> {
@@ -129,13 +140,22 @@ fn facts(study: &Study) -> Vec<(&'static str, String)> {
         ("Processor", format!("{}, {} threads", machine.processor, machine.threads)),
         ("System", machine.system.clone()),
         ("Scene", format!("{} triangles", study.num_triangles)),
-        ("Truth", format!("{} rays a pixel, {:.1} s", study.plan.truth_samples, study.truth_ms / 1e3)),
+        (
+            "Truth",
+            format!("{} rays a pixel, {:.1} s", study.plan.truth_samples, study.truth_ms / 1e3),
+        ),
         ("Times", format!("middle of {} frames after one to warm up", study.plan.repeat)),
-        ("Tables of the far field", format!("{:.1} s, once, before the first frame", study.tables_ms / 1e3)),
+        (
+            "Tables of the far field",
+            format!("{:.1} s, once, before the first frame", study.tables_ms / 1e3),
+        ),
         ("Settings", format!("{settings:?}")),
         (
             "Measures",
-            format!("of sRGB values, background over black; FLIP at {:.0} pixels a degree", metrics::PIXELS_PER_DEGREE),
+            format!(
+                "of sRGB values, background over black; FLIP at {:.0} pixels a degree",
+                metrics::PIXELS_PER_DEGREE
+            ),
         ),
     ]
 }

@@ -38,8 +38,10 @@ const TRIALS: &[(&str, &str)] = &[
 /// All trials, each with the options that are `given` where its own say nothing.
 pub(crate) fn all(given: &FilterOptions) -> Result<Vec<Trial>, Refusal> {
     let trial = |name, options: String| Trial::new(name, options, given);
-    let mut trials: Vec<_> =
-        TRIALS.iter().map(|&(name, options)| trial(name, options.into())).collect::<Result<_, _>>()?;
+    let mut trials: Vec<_> = TRIALS
+        .iter()
+        .map(|&(name, options)| trial(name, options.into()))
+        .collect::<Result<_, _>>()?;
     for &(word, filter, _) in FILTERS {
         // The truth is what all are held against.
         let is_tried = |trial: &Trial| trial.filter.is_same_choice(&filter);
@@ -96,7 +98,10 @@ pub(super) mod tests {
         let given = Horizon { lines: 7, max_anisotropy: 8.0, ..Horizon::default() };
         let trials = all(&Filter::Horizon(given).into()).unwrap();
         assert_eq!(named(&trials, "horizon"), Filter::Horizon(given));
-        assert_eq!(named(&trials, "horizon, 4 lines"), Filter::Horizon(Horizon { lines: 4, ..given }));
+        assert_eq!(
+            named(&trials, "horizon, 4 lines"),
+            Filter::Horizon(Horizon { lines: 4, ..given })
+        );
         let ewa = Ewa { derivatives: Derivatives::Relief, max_anisotropy: 8.0, ..Ewa::default() };
         assert_eq!(named(&trials, "EWA (3)"), Filter::Ewa(ewa));
     }

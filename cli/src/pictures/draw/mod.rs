@@ -8,7 +8,10 @@ pub(crate) use text::{CELL, Size};
 
 use basrelief::Frame;
 use basrelief::texture::linear_from_srgb8;
-use tiny_skia::{Color, FillRule, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, StrokeDash, Transform};
+use tiny_skia::{
+    Color, FillRule, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, StrokeDash,
+    Transform,
+};
 
 /// sRGB and opacity.
 pub(crate) type Rgba = [u8; 4];
@@ -16,7 +19,8 @@ pub(crate) type Rgba = [u8; 4];
 /// A place in pixels from the upper left corner.
 pub(crate) type Point = [f32; 2];
 
-/// How a line is drawn: its width in pixels, its colour, and the lengths of dashes and gaps if it has any.
+/// How a line is drawn: its width in pixels, its colour, and the lengths of dashes and gaps if it
+/// has any.
 #[derive(Clone, Copy)]
 pub(crate) struct Pen {
     pub(crate) width: f32,
@@ -42,7 +46,8 @@ pub(crate) struct Canvas {
 impl Canvas {
     /// A picture of one colour. Sizes are of a pixel at least.
     pub(crate) fn new(width: u32, height: u32, background: Rgba) -> Self {
-        let mut pixmap = Pixmap::new(width.max(1), height.max(1)).expect("a picture on a screen fits into memory");
+        let mut pixmap = Pixmap::new(width.max(1), height.max(1))
+            .expect("a picture on a screen fits into memory");
         pixmap.fill(color_of(background));
         Self { pixmap }
     }
@@ -85,7 +90,13 @@ impl Canvas {
     /// Fills a polygon.
     pub(crate) fn polygon(&mut self, points: &[Point], color: Rgba) {
         if let Some(path) = path(points, true) {
-            self.pixmap.fill_path(&path, &paint(color), FillRule::Winding, Transform::identity(), None);
+            self.pixmap.fill_path(
+                &path,
+                &paint(color),
+                FillRule::Winding,
+                Transform::identity(),
+                None,
+            );
         }
     }
 
@@ -114,7 +125,13 @@ impl Canvas {
     /// Fills a disc.
     pub(crate) fn disc(&mut self, [x, y]: Point, radius: f32, color: Rgba) {
         if let Some(path) = PathBuilder::from_circle(x, y, radius) {
-            self.pixmap.fill_path(&path, &paint(color), FillRule::Winding, Transform::identity(), None);
+            self.pixmap.fill_path(
+                &path,
+                &paint(color),
+                FillRule::Winding,
+                Transform::identity(),
+                None,
+            );
         }
     }
 
@@ -124,7 +141,8 @@ impl Canvas {
         self.pixmap.draw_pixmap(x, y, other.pixmap.as_ref(), &paint, Transform::identity(), None);
     }
 
-    /// Writes a line of text, its upper left corner at `x`, `y`. Letters that the font has not are `?`.
+    /// Writes a line of text, its upper left corner at `x`, `y`. Letters that the font has not are
+    /// `?`.
     pub(crate) fn text(&mut self, [x, y]: Point, text: &str, size: Size, color: Rgba) {
         let [width, height] = self.size().map(|side| side as i32);
         let mut left = x.round() as i32;
@@ -190,11 +208,16 @@ mod tests {
     fn what_is_drawn_is_in_the_frame() {
         let mut canvas = Canvas::new(60, 40, [255, 255, 255, 255]);
         canvas.rect([10.0, 10.0, 5.0, 5.0], [200, 0, 0, 255]);
-        canvas.line(&[[0.0, 30.5], [f32::NAN, 0.0], [60.0, 30.5]], Pen::solid(1.0, [0, 0, 255, 255]));
+        canvas
+            .line(&[[0.0, 30.5], [f32::NAN, 0.0], [60.0, 30.5]], Pen::solid(1.0, [0, 0, 255, 255]));
         canvas.text([30.0, 5.0], "M", Size::Small, [0, 0, 0, 255]);
         let bytes = canvas.into_frame().to_rgb8();
-        assert_eq!((bytes[12 * 60 + 12], bytes[30 * 60 + 40], bytes[0]), ([200, 0, 0], [0, 0, 255], [255; 3]));
-        let darkest = (0..40 * 60).filter(|i| i % 60 >= 30 && i / 60 < 25).map(|i| bytes[i][0]).min();
+        assert_eq!(
+            (bytes[12 * 60 + 12], bytes[30 * 60 + 40], bytes[0]),
+            ([200, 0, 0], [0, 0, 255], [255; 3])
+        );
+        let darkest =
+            (0..40 * 60).filter(|i| i % 60 >= 30 && i / 60 < 25).map(|i| bytes[i][0]).min();
         assert!(darkest < Some(60), "a letter was written");
     }
 }

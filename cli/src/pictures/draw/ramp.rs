@@ -1,7 +1,8 @@
 //! Numbers as colours.
 
-/// A scale from 0 to 1 in colours whose lightness grows evenly, for the colour-blind too: stops of the map Viridis
-/// (S. van der Walt and N. Smith 2015, public domain), or two colours that stand for less and more.
+/// A scale from 0 to 1 in colours whose lightness grows evenly, for the colour-blind too: stops of
+/// the map Viridis (S. van der Walt and N. Smith 2015, public domain), or two colours that stand
+/// for less and more.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ramp {
     /// Dark violet, blue, green, yellow.

@@ -20,7 +20,9 @@ pub(crate) fn glyphs(text: &str, size: Size) -> impl Iterator<Item = RasterizedC
         Size::Bold => (FontWeight::Bold, RasterHeight::Size16),
         Size::Title => (FontWeight::Bold, RasterHeight::Size20),
     };
-    text.chars().filter_map(move |c| get_raster(c, weight, height).or_else(|| get_raster('?', weight, height)))
+    text.chars().filter_map(move |c| {
+        get_raster(c, weight, height).or_else(|| get_raster('?', weight, height))
+    })
 }
 
 #[cfg(test)]
@@ -29,8 +31,9 @@ mod tests {
 
     #[test]
     fn a_cell_is_as_large_as_a_letter() {
-        let letters: Vec<_> =
-            glyphs("aW(\u{1F600}", Size::Small).map(|g| [g.width() as f32, g.height() as f32]).collect();
+        let letters: Vec<_> = glyphs("aW(\u{1F600}", Size::Small)
+            .map(|g| [g.width() as f32, g.height() as f32])
+            .collect();
         assert_eq!(letters, [CELL; 4]);
     }
 }

@@ -1,7 +1,9 @@
 //! The cut through the relief along the view; the eye is on the left, above.
 
 use crate::pictures::draw::{CELL, Canvas, Pen, Point, Rgba, Size};
-use crate::pictures::inspection::palette::{FAINT, FLAT, HIDDEN, INK, Layers, RAY, RELIEF, VISIBLE, WHITE};
+use crate::pictures::inspection::palette::{
+    FAINT, FLAT, HIDDEN, INK, Layers, RAY, RELIEF, VISIBLE, WHITE,
+};
 use basrelief::inspect::{Cut, CutPoint};
 
 const STONE: Rgba = [205, 198, 186, 255];
@@ -19,7 +21,10 @@ struct Map {
 
 impl Map {
     fn place(&self, along: f64, depth: f64) -> Point {
-        [((along - self.start) * self.scale[0]) as f32, ((depth + ABOVE) * self.scale[1] + self.top) as f32]
+        [
+            ((along - self.start) * self.scale[0]) as f32,
+            ((depth + ABOVE) * self.scale[1] + self.top) as f32,
+        ]
     }
 }
 
@@ -65,9 +70,12 @@ fn keys(canvas: &mut Canvas, layers: Layers) {
 }
 
 fn draw_relief(canvas: &mut Canvas, map: &Map, cut: &Cut) {
-    let mut outline: Vec<Point> = cut.points.iter().map(|point| map.place(point.along, point.depth)).collect();
+    let mut outline: Vec<Point> =
+        cut.points.iter().map(|point| map.place(point.along, point.depth)).collect();
     let profile = outline.clone();
-    for along in [cut.points.last(), cut.points.first()].into_iter().flatten().map(|point| point.along) {
+    for along in
+        [cut.points.last(), cut.points.first()].into_iter().flatten().map(|point| point.along)
+    {
         outline.push(map.place(along, 1.2));
     }
     canvas.polygon(&outline, STONE);
@@ -77,11 +85,13 @@ fn draw_relief(canvas: &mut Canvas, map: &Map, cut: &Cut) {
     canvas.line(&polygon, Pen::solid(2.0, FLAT));
 }
 
-/// What is seen and what is hidden between entry and exit, and the line of sight over the highest so far.
+/// What is seen and what is hidden between entry and exit, and the line of sight over the highest
+/// so far.
 fn draw_horizon(canvas: &mut Canvas, map: &Map, cut: &Cut) {
     let [entry, exit] = cut.ellipse;
     let displacement = cut.displacement.max(1e-9);
-    let last = cut.points.iter().position(|point| point.horizon >= exit).unwrap_or(cut.points.len() - 1);
+    let last =
+        cut.points.iter().position(|point| point.horizon >= exit).unwrap_or(cut.points.len() - 1);
     let sight = cut.points[..=last].iter().filter(|point| point.along >= entry - displacement);
     let sight: Vec<Point> = sight
         .map(|point| (point.along, (point.along - point.horizon) / displacement))
@@ -94,8 +104,14 @@ fn draw_horizon(canvas: &mut Canvas, map: &Map, cut: &Cut) {
         let [from, to] = [&pair[0], &pair[1]];
         // Relief that is seen over a place before the entry is not hidden: the pixel below sees it.
         highest = from.projected.max(highest);
-        let part = |p: f64| ((p - from.projected) / (to.projected - from.projected)).clamp(0.0, 1.0);
-        let at = |t: f64| map.place(from.along + (to.along - from.along) * t, from.depth + (to.depth - from.depth) * t);
+        let part =
+            |p: f64| ((p - from.projected) / (to.projected - from.projected)).clamp(0.0, 1.0);
+        let at = |t: f64| {
+            map.place(
+                from.along + (to.along - from.along) * t,
+                from.depth + (to.depth - from.depth) * t,
+            )
+        };
         if to.visible > 0.0 {
             let [risen, start, end] = [highest, from.horizon, to.horizon].map(part);
             canvas.line(&[at(0.0), at(risen)], Pen::solid(3.0, HIDDEN));

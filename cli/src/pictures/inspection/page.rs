@@ -1,7 +1,9 @@
 //! The picture of an inspected pixel: texels above, a cut below, a legend beside.
 
 use crate::pictures::draw::{CELL, Canvas, Pen, Rgba, Size};
-use crate::pictures::inspection::palette::{FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE, WHITE};
+use crate::pictures::inspection::palette::{
+    FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE, WHITE,
+};
 use crate::pictures::inspection::{cut, texels};
 use basrelief::inspect::Inspection;
 
@@ -77,15 +79,51 @@ fn legend(canvas: &mut Canvas, [x, mut y]: [f32; 2], seen: &Inspection, layers: 
 fn texel_keys(seen: &Inspection, layers: Layers) -> Vec<(Key, String)> {
     let sets = &seen.sets;
     let keys = [
-        (layers.texels && layers.hidden, Key::Area(VISIBLE), format!("visible: {}", sets.visible.len())),
-        (layers.texels && !layers.hidden, Key::Area(VISIBLE), format!("in the ellipse: {}", sets.all.len())),
-        (layers.hidden, Key::Area(HIDDEN), format!("hidden by higher relief: {}", sets.hidden.len())),
-        (layers.skipped, Key::Area(SKIPPED), format!("visible, but skipped from both ends: {}", sets.skipped.len())),
-        (layers.twice, Key::Area(TWICE), format!("counted twice without a buffer: {}", sets.counted_twice.len())),
-        (layers.ellipses[0], Key::Line(Pen::dashed(2.5, FLAT)), "ellipse by (2), around the polygon's place".into()),
-        (layers.ellipses[1], Key::Line(Pen::solid(2.5, RELIEF)), "ellipse by (3), around the hit".into()),
-        (texels::is_bounded(seen), Key::Line(texels::FILTERED), "filtered: without a jump of the relief".into()),
-        (seen.cut.displacement > 0.0, Key::Line(Pen::solid(2.0, RAY)), "the view ray down to the hit".into()),
+        (
+            layers.texels && layers.hidden,
+            Key::Area(VISIBLE),
+            format!("visible: {}", sets.visible.len()),
+        ),
+        (
+            layers.texels && !layers.hidden,
+            Key::Area(VISIBLE),
+            format!("in the ellipse: {}", sets.all.len()),
+        ),
+        (
+            layers.hidden,
+            Key::Area(HIDDEN),
+            format!("hidden by higher relief: {}", sets.hidden.len()),
+        ),
+        (
+            layers.skipped,
+            Key::Area(SKIPPED),
+            format!("visible, but skipped from both ends: {}", sets.skipped.len()),
+        ),
+        (
+            layers.twice,
+            Key::Area(TWICE),
+            format!("counted twice without a buffer: {}", sets.counted_twice.len()),
+        ),
+        (
+            layers.ellipses[0],
+            Key::Line(Pen::dashed(2.5, FLAT)),
+            "ellipse by (2), around the polygon's place".into(),
+        ),
+        (
+            layers.ellipses[1],
+            Key::Line(Pen::solid(2.5, RELIEF)),
+            "ellipse by (3), around the hit".into(),
+        ),
+        (
+            texels::is_bounded(seen),
+            Key::Line(texels::FILTERED),
+            "filtered: without a jump of the relief".into(),
+        ),
+        (
+            seen.cut.displacement > 0.0,
+            Key::Line(Pen::solid(2.0, RAY)),
+            "the view ray down to the hit".into(),
+        ),
         (layers.rays, Key::Line(Pen::solid(1.0, TWICE)), "from hidden to covering texels".into()),
     ];
     keys.into_iter().filter(|(is_shown, ..)| *is_shown).map(|(_, key, text)| (key, text)).collect()
@@ -108,6 +146,11 @@ fn number_lines(seen: &Inspection) -> Vec<String> {
         format!("displacement    {:.1}, {:.1} texels", sets.displacement[0], sets.displacement[1]),
         axes("(2)", &meant.flat),
         axes("(3)", &meant.relief),
-        format!("T {} = visible {} + hidden {}", sets.all.len(), sets.visible.len(), sets.hidden.len()),
+        format!(
+            "T {} = visible {} + hidden {}",
+            sets.all.len(),
+            sets.visible.len(),
+            sets.hidden.len()
+        ),
     ]
 }

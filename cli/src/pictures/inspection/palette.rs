@@ -30,7 +30,15 @@ pub(crate) struct Layers {
 
 impl Default for Layers {
     fn default() -> Self {
-        Self { ellipses: [true; 2], texels: true, hidden: true, skipped: true, twice: true, rays: false, horizon: true }
+        Self {
+            ellipses: [true; 2],
+            texels: true,
+            hidden: true,
+            skipped: true,
+            twice: true,
+            rays: false,
+            horizon: true,
+        }
     }
 }
 

@@ -1,7 +1,9 @@
 //! The texels around a pixel's footprint, enlarged; u to the right, v upwards.
 
 use crate::pictures::draw::{Canvas, Pen, Point, Rgba, Size};
-use crate::pictures::inspection::palette::{FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE};
+use crate::pictures::inspection::palette::{
+    FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE,
+};
 use basrelief::footprint::Ellipse;
 use basrelief::inspect::{Inspection, Projected, Reading};
 use basrelief::texture::srgb8_from_linear;
@@ -18,7 +20,9 @@ pub(crate) const FILTERED: Pen = Pen { width: 2.0, color: INK, dash: Some([3.0, 
 
 /// Whether a jump of the relief is left out of the ellipse that is filtered.
 pub(crate) fn is_bounded(seen: &Inspection) -> bool {
-    let has_widened = |reading: &Reading| [reading.flat.widened, reading.relief.widened].contains(&seen.sets.ellipse);
+    let has_widened = |reading: &Reading| {
+        [reading.flat.widened, reading.relief.widened].contains(&seen.sets.ellipse)
+    };
     !seen.readings.iter().any(has_widened)
 }
 
@@ -39,16 +43,20 @@ pub(crate) fn draw(seen: &Inspection, size: [u32; 2], layers: Layers) -> Canvas 
         draw_rays(&mut canvas, &map, seen);
     }
     let reading = &seen.readings[0];
-    let ellipses = [(&reading.flat, Pen::dashed(2.5, FLAT)), (&reading.relief, Pen::solid(2.5, RELIEF))];
-    for ((projected, pen), _) in ellipses.into_iter().zip(layers.ellipses).filter(|(_, is_shown)| *is_shown) {
+    let ellipses =
+        [(&reading.flat, Pen::dashed(2.5, FLAT)), (&reading.relief, Pen::solid(2.5, RELIEF))];
+    for ((projected, pen), _) in
+        ellipses.into_iter().zip(layers.ellipses).filter(|(_, is_shown)| *is_shown)
+    {
         let outline = outline(&projected.widened, projected.center).map(|place| map.place(place));
         let outline: Vec<Point> = outline.collect();
         canvas.line(&outline, Pen::solid(pen.width + 2.0, [255, 255, 255, 160]));
         canvas.line(&outline, pen);
     }
     if is_bounded(seen) && layers.ellipses[1] {
-        let outline: Vec<Point> =
-            outline(&seen.sets.ellipse, reading.relief.center).map(|place| map.place(place)).collect();
+        let outline: Vec<Point> = outline(&seen.sets.ellipse, reading.relief.center)
+            .map(|place| map.place(place))
+            .collect();
         canvas.line(&outline, FILTERED);
     }
     let [base, hit] = [map.place(reading.flat.center), map.place(reading.relief.center)];
@@ -69,7 +77,9 @@ impl Map {
     fn around(seen: &Inspection, size: [u32; 2], layers: Layers) -> Self {
         let reading = &seen.readings[0];
         let set = &seen.sets.all;
-        let texels = set.iter().flat_map(|t| [[t[0] as f32, t[1] as f32], [t[0] as f32 + 1.0, t[1] as f32 + 1.0]]);
+        let texels = set
+            .iter()
+            .flat_map(|t| [[t[0] as f32, t[1] as f32], [t[0] as f32 + 1.0, t[1] as f32 + 1.0]]);
         let of = |p: &Projected| outline(&p.widened, p.center).collect::<Vec<_>>();
         let near: Vec<[f32; 2]> = texels.chain(of(&reading.relief)).collect();
         let mut all = near.clone();
@@ -102,8 +112,9 @@ impl Map {
     fn texels(&self) -> impl Iterator<Item = ([i32; 2], Point)> + '_ {
         let [columns, rows] = self.size.map(|side| (side as f32 / self.scale).ceil() as i32 + 1);
         let [left, top] = self.corner.map(|c| c as i32);
-        (top - rows..=top)
-            .flat_map(move |y| (left..left + columns).map(move |x| ([x, y], self.place([x as f32, y as f32 + 1.0]))))
+        (top - rows..=top).flat_map(move |y| {
+            (left..left + columns).map(move |x| ([x, y], self.place([x as f32, y as f32 + 1.0])))
+        })
     }
 }
 
@@ -125,7 +136,8 @@ fn draw_texels(canvas: &mut Canvas, map: &Map, seen: &Inspection, layers: Layers
         };
         // Whole pixels: no seam between texels.
         let [left, top] = [x.round(), y.round()];
-        let area = [left, top, (x + map.scale).round() - left - gap, (y + map.scale).round() - top - gap];
+        let area =
+            [left, top, (x + map.scale).round() - left - gap, (y + map.scale).round() - top - gap];
         canvas.rect(area, tinted(color, tint));
         if let (Some(count), true) = (count, map.scale >= 18.0) {
             let at = [x + map.scale * 0.5 - 4.0, y + map.scale * 0.5 - 8.0];
@@ -142,8 +154,9 @@ fn draw_texels(canvas: &mut Canvas, map: &Map, seen: &Inspection, layers: Layers
 /// The colour of a texel under a tint; what is not in the set is paler.
 fn tinted(color: [u8; 3], tint: Option<Rgba>) -> Rgba {
     let (over, part) = tint.map_or(([235; 3], 0.35), |[r, g, b, _]| ([r, g, b], 0.62));
-    let [r, g, b] =
-        std::array::from_fn(|i| (f32::from(color[i]) * (1.0 - part) + f32::from(over[i]) * part + 0.5) as u8);
+    let [r, g, b] = std::array::from_fn(|i| {
+        (f32::from(color[i]) * (1.0 - part) + f32::from(over[i]) * part + 0.5) as u8
+    });
     [r, g, b, 255]
 }
 
@@ -164,14 +177,17 @@ fn draw_view(canvas: &mut Canvas, seen: &Inspection) {
     let middle = [62.0, height as f32 - 62.0];
     canvas.rect([6.0, height as f32 - 122.0, 112.0, 116.0], [255, 255, 255, 225]);
     let [x, y] = [u as f32 * 34.0, v as f32 * -34.0];
-    canvas.arrow([[middle[0] - x, middle[1] - y - 6.0], [middle[0] + x, middle[1] + y - 6.0]], Pen::solid(3.0, INK));
+    canvas.arrow(
+        [[middle[0] - x, middle[1] - y - 6.0], [middle[0] + x, middle[1] + y - 6.0]],
+        Pen::solid(3.0, INK),
+    );
     canvas.text([14.0, height as f32 - 24.0], "view: to far", Size::Small, INK);
 }
 
 /// The outline of an ellipse around `center`, its points closest where it bends most.
 fn outline(ellipse: &Ellipse, center: [f32; 2]) -> impl Iterator<Item = [f32; 2]> {
-    // With F as it stands: as printed it is not that of A, B and C. The larger eigenvalue is that of
-    // the shorter axis.
+    // With F as it stands: as printed it is not that of A, B and C. The larger eigenvalue is that
+    // of the shorter axis.
     let [smaller, larger] = ellipse.squared_axes();
     let [short, long] = [larger, smaller].map(|eigenvalue| (ellipse.f / eigenvalue).sqrt());
     let (sin, cos) = (0.5 * ellipse.b.atan2(ellipse.a - ellipse.c)).sin_cos();
@@ -188,14 +204,24 @@ mod tests {
 
     #[test]
     fn outlines_lie_on_the_ellipse() {
-        for [a, b, c, f] in [[3.0, 2.0, 5.0, 7.0], [1.0, 0.0, 1.0, 4.0], [20.8, 5.6, 3.98, 75.2], [0.5, -1.9, 2.0, 0.1]]
-        {
+        for [a, b, c, f] in [
+            [3.0, 2.0, 5.0, 7.0],
+            [1.0, 0.0, 1.0, 4.0],
+            [20.8, 5.6, 3.98, 75.2],
+            [0.5, -1.9, 2.0, 0.1],
+        ] {
             let ellipse = Ellipse { a, b, c, f };
             let points: Vec<_> = outline(&ellipse, [0.0, 0.0]).collect();
-            assert!(points.iter().all(|&point| (ellipse.r2(point) - 1.0).abs() < 1e-3), "{ellipse:?}");
+            assert!(
+                points.iter().all(|&point| (ellipse.r2(point) - 1.0).abs() < 1e-3),
+                "{ellipse:?}"
+            );
             let most = points.iter().map(|p| p[0].hypot(p[1])).fold(0.0, f32::max);
             let smaller = 0.5 * (a + c) - (0.5_f32 * (a - c)).hypot(0.5 * b);
-            assert!((most / (f / smaller).sqrt() - 1.0).abs() < 1e-2, "the tips are there: {ellipse:?}");
+            assert!(
+                (most / (f / smaller).sqrt() - 1.0).abs() < 1e-2,
+                "the tips are there: {ellipse:?}"
+            );
         }
     }
 }

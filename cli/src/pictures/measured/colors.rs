@@ -31,8 +31,14 @@ pub(crate) enum Key {
 
 impl Scale {
     pub(crate) fn new(measured: &Measured, view: View) -> Self {
-        let logs = measured.pixels.iter().flatten().map(|[distance, ..]| distance.log2()).filter(|log| log.is_finite());
-        let (low, high) = logs.fold((f32::MAX, f32::MIN), |(low, high), log| (low.min(log), high.max(log)));
+        let logs = measured
+            .pixels
+            .iter()
+            .flatten()
+            .map(|[distance, ..]| distance.log2())
+            .filter(|log| log.is_finite());
+        let (low, high) =
+            logs.fold((f32::MAX, f32::MIN), |(low, high), log| (low.min(log), high.max(log)));
         let distances = if low < high { [low, high] } else { [0.0, 1.0] };
         Self { view, distances }
     }
@@ -62,7 +68,10 @@ impl Scale {
                 areas.push((NOTHING, "none".into()));
                 Key::Areas(areas)
             }
-            View::Mip => Key::Bar { ramp: Ramp::Viridis, ticks: steps(MOST_LEVEL as i32, &|i| i.to_string()) },
+            View::Mip => Key::Bar {
+                ramp: Ramp::Viridis,
+                ticks: steps(MOST_LEVEL as i32, &|i| i.to_string()),
+            },
             View::Footprint => {
                 let ticks = steps(MOST_LOG_AREA as i32 / 2, &|i| (1_u32 << (2 * i)).to_string());
                 Key::Bar { ramp: Ramp::Viridis, ticks }
@@ -84,9 +93,14 @@ impl Scale {
                 .to_vec(),
             ),
             View::Uv => Key::Areas(
-                [([0.0, 0.0], "u 0, v 0"), ([0.99, 0.0], "u 1"), ([0.0, 0.99], "v 1"), ([0.99, 0.99], "u 1, v 1")]
-                    .map(|(uv, text)| (of_uv(uv), text.to_owned()))
-                    .to_vec(),
+                [
+                    ([0.0, 0.0], "u 0, v 0"),
+                    ([0.99, 0.0], "u 1"),
+                    ([0.0, 0.99], "v 1"),
+                    ([0.99, 0.99], "u 1, v 1"),
+                ]
+                .map(|(uv, text)| (of_uv(uv), text.to_owned()))
+                .to_vec(),
             ),
         }
     }
@@ -125,7 +139,9 @@ impl Scale {
 }
 
 fn mix(from: Rgb, to: Rgb, part: f32) -> Rgb {
-    std::array::from_fn(|i| (f32::from(from[i]) * (1.0 - part) + f32::from(to[i]) * part + 0.5) as u8)
+    std::array::from_fn(|i| {
+        (f32::from(from[i]) * (1.0 - part) + f32::from(to[i]) * part + 0.5) as u8
+    })
 }
 
 fn of_normal(normal: [f32; 3]) -> Rgb {
@@ -155,7 +171,10 @@ mod tests {
     fn distances_fill_the_scale_and_nothing_is_dark() {
         let measured = measured(&[Some(2.0), None, Some(32.0)]);
         let scale = Scale::new(&measured, View::Depth);
-        assert_eq!(scale.colors(&measured), [Ramp::Viridis.at(0.0), NOTHING, Ramp::Viridis.at(1.0)]);
+        assert_eq!(
+            scale.colors(&measured),
+            [Ramp::Viridis.at(0.0), NOTHING, Ramp::Viridis.at(1.0)]
+        );
         let Key::Bar { ticks, .. } = scale.key() else { panic!("a bar") };
         assert_eq!((ticks[0].1.as_str(), ticks[4].1.as_str()), ("2.00", "32.00"));
     }
