@@ -59,7 +59,6 @@ pub struct Geometry {
 }
 
 /// The screen triangles of `scene`, in a fresh [`Geometry`].
-#[must_use]
 pub fn project(scene: &Scene, settings: &Settings) -> Geometry {
     let mut geometry = Geometry::default();
     geometry.project(scene, settings);
@@ -123,13 +122,11 @@ impl Geometry {
     }
 
     /// How the scene was projected.
-    #[must_use]
     pub fn projection(&self) -> &Projection {
         &self.projection
     }
 
     /// How many screen triangles there are.
-    #[must_use]
     pub fn num_triangles(&self) -> usize {
         self.chunks.iter().map(Vec::len).sum()
     }
@@ -140,7 +137,6 @@ impl Geometry {
     }
 
     /// How many chunks the triangles lie in; each is in order, and chunk after chunk is.
-    #[must_use]
     pub fn num_chunks(&self) -> usize {
         self.chunks.len()
     }
@@ -152,7 +148,6 @@ impl Geometry {
     }
 
     /// The triangle of an index that [`Geometry::chunk`] gave.
-    #[must_use]
     #[inline]
     pub fn triangle(&self, index: u32) -> &ScreenTriangle {
         &self.chunks[(index >> INDEX_BITS) as usize][(index & ((1 << INDEX_BITS) - 1)) as usize]

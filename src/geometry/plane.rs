@@ -29,7 +29,6 @@ pub struct ScreenBasis {
 impl ScreenBasis {
     /// The basis of a triangle from its corners in view space; `center` is the frame's middle in
     /// pixels. A triangle seen edge on takes the values of its farthest corner everywhere.
-    #[must_use]
     #[inline]
     pub fn new(view: [[f64; 3]; 3], center: [f64; 2]) -> Self {
         let rows = rows(view, 1.0);
@@ -49,14 +48,12 @@ impl ScreenBasis {
     }
 
     /// The plane of 1 / w.
-    #[must_use]
     #[inline]
     pub fn inverse_w(&self) -> Plane {
         self.plane([1.0; 3])
     }
 
     /// The plane of `a / w` from the values of `a` at the corners.
-    #[must_use]
     #[inline]
     pub fn plane(&self, values: [f64; 3]) -> Plane {
         plane(&self.rows, self.center, values).map(|c| c as f32)

@@ -50,7 +50,6 @@ pub struct Projection {
 
 impl Projection {
     /// The projection of `camera` on the frame of `settings`.
-    #[must_use]
     pub fn new(camera: &Camera, settings: &Settings) -> Self {
         let focal = camera.focal_pixels(settings.height);
         let [right, up, forward] = camera.axes();

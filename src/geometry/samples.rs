@@ -14,7 +14,6 @@ const EIGHT: [[i32; 2]; 8] =
 
 /// The sample positions of a pixel for `num_samples` of 1, 4 or 8, in 1/256 pixel from its upper
 /// left corner.
-#[must_use]
 pub fn sample_offsets(num_samples: u32) -> &'static [[i32; 2]] {
     match num_samples {
         8 => &EIGHT,
@@ -24,7 +23,6 @@ pub fn sample_offsets(num_samples: u32) -> &'static [[i32; 2]] {
 }
 
 /// Least and largest offset of [`sample_offsets`], along both axes.
-#[must_use]
 #[inline]
 pub fn offset_bounds(num_samples: u32) -> [i32; 2] {
     match num_samples {

@@ -24,6 +24,7 @@ mod ray;
 mod readings;
 mod sets;
 
+pub use crate::footprint::Ellipse;
 pub use cut::{Cut, CutPoint};
 pub use figures::Figure;
 pub use measure::{Measured, View, measure};

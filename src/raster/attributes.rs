@@ -37,7 +37,6 @@ pub(super) struct PlaneMaker<'a> {
 
 impl AttributePlanes {
     /// The planes of the scene's triangle that `triangle` is, or is a piece of.
-    #[must_use]
     pub fn new(
         geometry: &Geometry,
         triangle: &ScreenTriangle,

@@ -27,7 +27,6 @@ pub struct Rect {
 
 impl Rect {
     /// Columns and rows.
-    #[must_use]
     #[inline]
     pub fn size(&self) -> [i32; 2] {
         [self.max[0] - self.min[0], self.max[1] - self.min[1]]
@@ -58,7 +57,6 @@ pub struct Edges<const S: usize> {
 
 impl<const S: usize> Edges<S> {
     /// The edge functions of a triangle of positive area (corners in 1/256 pixel).
-    #[must_use]
     #[inline]
     pub fn new(corners: &[[i32; 2]; 3], offsets: &[[i32; 2]]) -> Self {
         let mut edges = Self { a: [0; 3], b: [0; 3], c: [[0; 3]; S] };
@@ -79,7 +77,6 @@ impl<const S: usize> Edges<S> {
 
     /// Whether no sample of the rectangle is inside; may say no where that is so, never yes where
     /// it is not.
-    #[must_use]
     #[inline]
     pub fn misses(&self, rect: &Rect) -> bool {
         (0..3).any(|i| {

@@ -6,7 +6,6 @@ use crate::settings::{Derivatives, FootprintRule, Formulas};
 /// and (x, y+1).
 ///
 /// The letters are the paper's: offsets (m, r) at (x, y), (n, o) at (x+1, y), (p, s) at (x, y+1).
-#[must_use]
 pub fn derivatives(uv: [[f32; 2]; 3], offsets: [[f32; 2]; 3], rule: &FootprintRule) -> [f32; 4] {
     let [[u, v], [u_right, v_right], [u_below, v_below]] = uv;
     let [[m, r], [n, o], [p, s]] = offsets;
@@ -44,7 +43,6 @@ pub struct Conic {
 
 impl Conic {
     /// Formula (1) from `[Ux, Vx, Uy, Vy]`.
-    #[must_use]
     pub fn new([ux, vx, uy, vy]: [f64; 4], formulas: Formulas) -> Self {
         let f = match formulas {
             Formulas::Meant => (ux * vy - uy * vx) * (ux * vy - uy * vx),
@@ -58,7 +56,6 @@ impl Conic {
     ///
     /// The axes squared are the eigenvalues of `[[C, -B/2], [-B/2, A]]`; the shorter grows along
     /// its eigenvector.
-    #[must_use]
     pub fn widened(self, kernel: f64, max_anisotropy: f64, least: f64) -> Self {
         let (a, b, c) = (self.a + kernel, self.b, self.c + kernel);
         let half = (0.25 * (a - c) * (a - c) + 0.25 * b * b).sqrt();
@@ -71,7 +68,6 @@ impl Conic {
     }
 
     /// `(A U^2 + B U V + C V^2) / F`.
-    #[must_use]
     pub fn r2(&self, u: f64, v: f64) -> f64 {
         (self.a * u * u + self.b * u * v + self.c * v * v) / self.f
     }

@@ -34,7 +34,6 @@ struct Crossing {
 
 impl Lines<'_> {
     /// The share of every texel in the pixel's colour. They add up to 1.
-    #[must_use]
     pub fn weights(&self) -> BTreeMap<[i32; 2], f64> {
         let mut weights = BTreeMap::new();
         let half_width = self.half_width();
@@ -51,7 +50,6 @@ impl Lines<'_> {
     }
 
     /// The pixel's colour.
-    #[must_use]
     pub fn mean(&self) -> [f64; 3] {
         self.weights().into_iter().fold([0.0; 3], |sum, (texel, weight)| {
             let color = color(self.level, texel);
@@ -61,7 +59,6 @@ impl Lines<'_> {
 
     /// Whether a texel makes a new record on the line through the ellipse's middle, which must be
     /// the texel's centre.
-    #[must_use]
     pub fn is_record(&self, texel: [i32; 2]) -> bool {
         let own = -(1.0 - height(self.level, texel)) * self.depth().abs();
         // Rows nearer than the deepest relief cannot reach over the texel's place.
@@ -70,7 +67,6 @@ impl Lines<'_> {
     }
 
     /// Half the width of the ellipse across the lines.
-    #[must_use]
     pub fn half_width(&self) -> f64 {
         let [a, b, c] = self.sheared();
         1.0 / (a - b * b / (4.0 * c)).sqrt()

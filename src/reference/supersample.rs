@@ -16,7 +16,6 @@ pub struct Ray {
 
 impl Ray {
     /// From places in texture repeats.
-    #[must_use]
     pub fn new(surface: &Surface, base: [f32; 2], displacement: [f32; 2]) -> Self {
         let texels = surface.base().texels_per_repeat();
         let scaled = |p: [f32; 2]| [0, 1].map(|i| f64::from(p[i]) * f64::from(texels[i]));
@@ -24,20 +23,17 @@ impl Ray {
     }
 
     /// The place at a depth, 0 to 1.
-    #[must_use]
     pub fn at(&self, depth: f64) -> [f64; 2] {
         [0, 1].map(|i| self.base[i] + self.displacement[i] * depth)
     }
 
     /// How far the ray is above the bilinear relief at a depth; 1 is the whole relief.
-    #[must_use]
     pub fn gap(&self, level: &Level, depth: f64) -> f64 {
         1.0 - depth - bilinear(self.at(depth), |texel| height(level, texel))
     }
 }
 
 /// The depth, 0 to 1, of the first hit, by `steps` steps a texel and halving.
-#[must_use]
 pub fn first_hit(level: &Level, ray: &Ray, steps: f64) -> f64 {
     let longest = ray.displacement[0].abs().max(ray.displacement[1].abs());
     let num = (longest * steps).ceil().max(1.0);
@@ -56,7 +52,6 @@ pub fn first_hit(level: &Level, ray: &Ray, steps: f64) -> f64 {
 /// The colour of a pixel by `2 side x 2 side` rays over the square around the disc of radius one
 /// pixel, each weighted with the kernel `exp(-2 r^2)`. The slope is the same for all; marches take
 /// two steps a texel, then halve.
-#[must_use]
 pub fn supersampled(surface: &Surface, footprint: &Footprint, side: i32) -> [f64; 3] {
     let level = surface.base();
     let middle = Ray::new(surface, footprint.base, footprint.displacement);

@@ -11,7 +11,6 @@ pub const RAY_TIE: f64 = 1.0 / 65536.0;
 
 /// The texels whose centre lies in the ellipse around `center` (in texels), with their `r^2`; those
 /// up to `slack` outside are listed too.
-#[must_use]
 pub fn texels(conic: &Conic, center: [f64; 2], slack: f64) -> Vec<([i32; 2], f64)> {
     let Conic { a, b, c, f } = *conic;
     let determinant = 4.0 * a * c - b * b;
@@ -33,7 +32,6 @@ fn r2(conic: &Conic, center: [f64; 2], [x, y]: [i32; 2]) -> f64 {
 /// hidden where this is above 0. `displacement` is in texels down to the deepest relief.
 ///
 /// The ray is followed in steps of one texel along the longer axis, with the relief linear across.
-#[must_use]
 pub fn ray_margin(level: &Level, texel: [i32; 2], displacement: [f64; 2]) -> f64 {
     let [dx, dy] = displacement;
     let longest = dx.abs().max(dy.abs()).max(1e-3);
@@ -61,7 +59,6 @@ pub fn ray_margin(level: &Level, texel: [i32; 2], displacement: [f64; 2]) -> f64
 }
 
 /// The mean colour of texels with the weight `exp(-2 r^2)`; `None` of none.
-#[must_use]
 pub fn mean(
     level: &Level,
     texels: &[[i32; 2]],

@@ -29,7 +29,6 @@ const LEAST_NUDGE: f32 = 1.0 / 8_388_608.0;
 
 /// The depth `t`, 0 to 1, of the first hit of the rays from `base` along `displacement`, both in
 /// repeats.
-#[must_use]
 pub fn march(
     field: &HeightField,
     base: &[PixelLanes; 2],

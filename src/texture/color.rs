@@ -12,14 +12,12 @@
 use crate::simd::{HAS_SHUFFLE, LineLanes, from_words, pick, u32x16, words};
 
 /// Linear light, 0 to 1, from an sRGB-encoded value, 0 to 1; clamped, NaN gives 0.
-#[must_use]
 pub fn linear_from_srgb(encoded: f32) -> f32 {
     decode(f64::from(clamped(encoded, 0.0))) as f32
 }
 
 /// Linear light, 0 to 1, from an 8-bit sRGB-encoded value: [`linear_from_srgb`] of `encoded / 255`,
 /// from a table.
-#[must_use]
 pub fn linear_from_srgb8(encoded: u8) -> f32 {
     const LINEAR: [f32; 256] = {
         let mut linear = [0.0; 256];
@@ -34,7 +32,6 @@ pub fn linear_from_srgb8(encoded: u8) -> f32 {
 }
 
 /// An sRGB-encoded value, 0 to 1, from linear light; clamped, NaN gives 0.
-#[must_use]
 pub fn srgb_from_linear(linear: f32) -> f32 {
     encode(f64::from(clamped(linear, 0.0))) as f32
 }
@@ -43,7 +40,6 @@ pub fn srgb_from_linear(linear: f32) -> f32 {
 ///
 /// A byte is the number of thresholds at or below the light. Light is cut into steps so fine that
 /// each holds at most one threshold, and `BELOW` knows how many lie below each step.
-#[must_use]
 pub fn srgb8_from_linear(linear: f32) -> u8 {
     let linear = clamped(linear, FIRST_STEP);
     let below = BELOW[step(linear)];

@@ -3,7 +3,7 @@
 use crate::commands::inspect::subject::Subject;
 use crate::options::choices::word;
 use crate::refusal::Refusal;
-use basrelief::footprint::Ellipse;
+use basrelief::inspect::Ellipse;
 use basrelief::inspect::{Corner, Cut, Inspection, Projected, Ray, Reading, Sets};
 use basrelief::{Derivatives, FootprintRule, Formulas};
 use serde::Serialize;

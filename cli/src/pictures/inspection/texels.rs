@@ -4,7 +4,7 @@ use crate::pictures::draw::{Canvas, Pen, Point, Rgba, Size};
 use crate::pictures::inspection::palette::{
     FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE,
 };
-use basrelief::footprint::Ellipse;
+use basrelief::inspect::Ellipse;
 use basrelief::inspect::{Inspection, Projected, Reading};
 use basrelief::texture::srgb8_from_linear;
 use std::collections::{HashMap, HashSet};
