@@ -75,15 +75,15 @@ impl<'a> Filtering<'a> {
         Self { prepared, filter, scratch: Scratch::default(), found }
     }
 
-    fn run(&mut self, pixels: &[Footprints], is_fine: bool) -> Filtered {
-        let batch = Batch { pixels, lights: &[], is_fine };
+    fn run(&mut self, pixels: &[Footprints], is_alone: bool) -> Filtered {
+        let batch = Batch { pixels, lights: &[], is_alone };
         let found = &mut self.found[..pixels.len()];
         self.filter.colors(self.prepared, &batch, &mut self.scratch, found);
         found[0]
     }
 
-    fn one(&mut self, pixel: &Footprint, is_fine: bool) -> Filtered {
-        self.run(&[Footprints::splat(pixel)], is_fine)
+    fn one(&mut self, pixel: &Footprint, is_alone: bool) -> Filtered {
+        self.run(&[Footprints::splat(pixel)], is_alone)
     }
 }
 

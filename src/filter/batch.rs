@@ -12,9 +12,9 @@ pub struct Batch<'a> {
     pub pixels: &'a [Footprints],
     /// Under lights, those of each covered pixel, in order; else empty.
     pub lights: &'a [LocalLights],
-    /// Whether the horizon cuts each pixel's kernel finely enough for its weights to be exact to
-    /// 1e-4. Pictures need not that, and are drawn several times as fast without.
-    pub is_fine: bool,
+    /// Whether the horizon sweeps each pixel by itself, and cuts its kernel finely enough for its
+    /// weights to be exact to 1e-4. Pictures need not that, and are drawn many times as fast without.
+    pub is_alone: bool,
 }
 
 /// The means of eight pixels' texels, in the units that the surface stores; see [`Texel`].

@@ -162,15 +162,12 @@ impl Filter {
 }
 
 impl Prepared {
-    /// The linear RGB, unlit, of pixels by a filter. Footprints may be given in any order.
-    ///
-    /// Of each 256 that are given, [`Filter::Horizon`] sweeps those together that lie side by side,
-    /// which is faster, and lets a colour depend on its neighbours by up to a few steps of 255. One
-    /// footprint a call is swept by itself.
+    /// The linear RGB, unlit, of pixels by a filter, each by itself: a colour does not depend on
+    /// what else is given.
     pub fn colors(&self, filter: &Filter, footprints: &[Footprint]) -> Vec<[f32; 3]> {
         let pixels: Vec<_> = footprints.chunks(8).map(Footprints::pack).collect();
         let mut filtered = vec![Filtered::default(); pixels.len()];
-        let batch = Batch { pixels: &pixels, lights: &[], is_fine: true };
+        let batch = Batch { pixels: &pixels, lights: &[], is_alone: true };
         filter.colors(self, &batch, &mut Scratch::default(), &mut filtered);
         let scale = self.surface().color_scale() / FULL_F32;
         (0..footprints.len())

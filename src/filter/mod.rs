@@ -29,12 +29,13 @@
 //!
 //! [`Prepared`] is a surface with all that is made of it once. [`Prepared::footprint`] makes a
 //! [`Footprint`] of a place, derivatives and a view; [`Prepared::colors`] filters many of them a
-//! call, by any [`Filter`], the paper's own method included. [`Filter::Horizon`] builds tables for
-//! distant footprints when it is first asked, unless its options say no.
+//! call, by any [`Filter`](crate::Filter), the paper's own method included.
+//! [`Filter::Horizon`](crate::Filter::Horizon) builds tables for distant footprints when it is
+//! first asked, unless its options say no.
 //!
 //! Frames go the same way eight pixels a vector: [`Footprints`] in, [`Filtered`] out, by
-//! [`Filter::colors`], the one place that tells the filters apart. [`Filter::levels`] beside it
-//! says what that reads.
+//! [`Filter::colors`](crate::Filter::colors), the one place that tells the filters apart.
+//! [`Filter::levels`](crate::Filter::levels) beside it says what that reads.
 //!
 //! | room | what it does |
 //! |---|---|

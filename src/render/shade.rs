@@ -118,7 +118,7 @@ impl<'a> Shader<'a> {
         }
         filtered.clear();
         filtered.resize(pairs.len(), Filtered::default());
-        let batch = Batch { pixels: footprints, lights, is_fine: false };
+        let batch = Batch { pixels: footprints, lights, is_alone: false };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
         if self.is_lit() {
             let mut lights = lights.iter();
@@ -183,7 +183,7 @@ impl<'a> Shader<'a> {
                     covered,
                 );
                 let mut filtered = [Filtered::default()];
-                let batch = Batch { pixels: &[rays], lights: &[], is_fine: false };
+                let batch = Batch { pixels: &[rays], lights: &[], is_alone: false };
                 self.count(self.settings.filter.colors(
                     ground.prepared,
                     &batch,

@@ -72,7 +72,7 @@ pub(super) fn colors(
     let surface = prepared.surface();
     let far = far_field(prepared, horizon, batch.is_lit());
     let far = far.as_deref();
-    let num_bins = if batch.is_fine { FINE_BINS } else { picture_bins(horizon, batch.is_lit()) };
+    let num_bins = if batch.is_alone { FINE_BINS } else { picture_bins(horizon, batch.is_lit()) };
     let mut lights = batch.lights;
     let mut num_rows = 0;
     for (pixels, out) in batch.pixels.chunks(NUM_VECTORS).zip(out.chunks_mut(NUM_VECTORS)) {
@@ -82,7 +82,10 @@ pub(super) fn colors(
         found.clear();
         found.resize(near.len(), Texel::default());
         let (of_these, others) = lights.split_at(if lights.is_empty() { 0 } else { near.len() });
-        let patches = patches(prepared, pixels, horizon, num_bins, batch.is_lit());
+        let patches = Patches {
+            is_alone: batch.is_alone,
+            ..patches(prepared, pixels, horizon, num_bins, batch.is_lit())
+        };
         num_rows += patches.means(near, of_these, patch, found);
         lights = others;
         // Blend it with what the tables give.
@@ -181,5 +184,6 @@ fn patches<'a>(
     is_lit: bool,
 ) -> Patches<'a> {
     let loss = if is_lit { None } else { prepared.level_loss() };
-    Patches { surface: prepared.surface(), loss, pixels, horizon, num_bins, is_lit }
+    let surface = prepared.surface();
+    Patches { surface, loss, pixels, horizon, num_bins, is_lit, is_alone: false }
 }

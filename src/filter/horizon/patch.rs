@@ -62,6 +62,8 @@ pub(super) struct Patches<'a> {
     /// Bins along the shortest ellipse: how finely the kernel is cut.
     pub(super) num_bins: f32,
     pub(super) is_lit: bool,
+    /// Whether each pixel is swept by itself.
+    pub(super) is_alone: bool,
 }
 
 /// A patch that one sweep can hold.
@@ -102,7 +104,7 @@ impl<'a> Patches<'a> {
         if picks.is_empty() {
             return 0;
         }
-        if let Some(plan) = self.plan(picks, scratch) {
+        if let Some(plan) = self.plan_together(picks, scratch) {
             return self.sweep(&plan, (picks, lights), scratch, found);
         }
         let middle = picks.len() / 2;
@@ -117,13 +119,18 @@ impl<'a> Patches<'a> {
         if picks.is_empty() {
             return;
         }
-        if let Some(plan) = self.plan(picks, scratch) {
+        if let Some(plan) = self.plan_together(picks, scratch) {
             levels.extend(picks.iter().map(|_| plan.level));
             return;
         }
         let (near, far) = picks.split_at(picks.len() / 2);
         self.levels(near, scratch, levels);
         self.levels(far, scratch, levels);
+    }
+
+    /// [`Self::plan`], unless several pixels are picked and each is wanted by itself.
+    fn plan_together(&self, picks: &[u8], scratch: &mut PatchScratch) -> Option<Plan<'a>> {
+        if self.is_alone && picks.len() > 1 { None } else { self.plan(picks, scratch) }
     }
 
     /// Plans the picked pixels as one patch, whose lines are left in the scratch; `None` where they
