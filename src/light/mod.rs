@@ -40,6 +40,7 @@ impl LocalLights {
         let to_eye = (eye - point.position).normalize_or_zero();
         let normal = point.normal.normalize_or(Vec3::Z);
         let normal = if normal.dot(to_eye) < 0.0 { -normal } else { normal };
+        // Take off what interpolated tangents have along the normal; u and v may stay oblique.
         let [u, v] = point.tangents.map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
         let local = |w: Vec3| Vec3::new(u.dot(w), v.dot(w), normal.dot(w));
         let lights = lights.iter().map(|light| {
@@ -49,6 +50,7 @@ impl LocalLights {
                 }
                 Light::Point { position, intensity } => {
                     let way = position - point.position;
+                    // The least distance keeps a light on the surface finite.
                     (way.normalize_or_zero(), intensity / way.length_squared().max(1e-12))
                 }
             };
@@ -69,6 +71,8 @@ impl LocalLights {
         if material.specular == Vec3::ZERO {
             return Vec3::ZERO;
         }
+        // Normals that cancel out leave no length to divide by, and rounding may make a mean too
+        // long.
         let length = mean_normal.length().clamp(1e-3, 1.0);
         let normal = mean_normal / length;
         let toksvig = length / (length + material.shininess * (1.0 - length));
@@ -98,6 +102,7 @@ pub fn power(x: f32, s: f32) -> f32 {
     let z = (m - 1.0) / (m + 1.0);
     let series = (0..10).rev().fold(0.0, |sum, i| sum * z * z + 1.0 / f64::from(2 * i + 1));
     let ln = 2.0 * z * series + exponent as f64 * std::f64::consts::LN_2;
+    // e^-60 is black in any picture, and a 64th of 60 is little enough for twelve terms.
     let y = (ln * f64::from(s)).max(-60.0);
     // exp(y) by a 64th of y in Taylor's series, then six squarings.
     let part = y / 64.0;

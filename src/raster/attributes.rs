@@ -73,6 +73,8 @@ impl<'a> PlaneMaker<'a> {
     }
 
     fn fill_lanes(&self, planes: &mut [AttributePlanes], corners: &[Corners; 8]) {
+        // Set up the planes from the corners before clipping and snapping, in f64: pieces of a
+        // triangle then share them.
         let rays = vectors(corners, |mesh, i| mesh.positions[i])
             .map(|position| self.projection.rays(position));
         let basis = BasisLanes::new(
@@ -86,11 +88,15 @@ impl<'a> PlaneMaker<'a> {
         let uv = [0, 1].map(|axis| basis.plane(tex_coords.map(|uv| uv[axis])));
         for (lane, planes) in planes.iter_mut().enumerate() {
             planes.inverse_w = one(&inverse_w, lane);
+            // Meshes with texture coordinates and without may meet in one vector, so each lane is
+            // asked.
             let is_textured = !corners[lane].mesh.tex_coords.is_empty();
             planes.uv =
                 if is_textured { [0, 1].map(|i| one(&uv[i], lane)) } else { [Plane::default(); 2] };
+            // Straight down, unless a view is found below.
             planes.view = [Plane::default(), Plane::default(), planes.inverse_w];
         }
+        // One lane with relief is reason enough to find all eight; flat ones keep what they have.
         if corners.iter().any(|corners| self.needs_view(corners)) {
             let (normals, tangents) = frames(corners);
             let views = [0, 1, 2].map(|c| {
@@ -104,6 +110,7 @@ impl<'a> PlaneMaker<'a> {
         if self.is_lit {
             fill_lit(planes, &basis, corners);
         } else {
+            // Planes are kept from frame to frame, and the frame before may have been lit.
             planes.iter_mut().for_each(|planes| planes.lit = None);
         }
     }
@@ -167,12 +174,15 @@ fn frames(corners: &[Corners; 8]) -> ([Vectors; 3], [[Vectors; 3]; 2]) {
 /// `(alpha, beta, gamma)` of rays in the texture frames of vertices; straight down where there is
 /// no frame.
 fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vectors {
+    // Find out whether the vectors span a space. Squares are compared, so that no length needs a
+    // root.
     let across = cross(u, v);
     let volume = dot(n, across);
     let size_squared = dot(u, u) * dot(v, v) * dot(n, n);
     let is_frame = (volume * volume).simd_gt(FLAT * FLAT * size_squared)
         & volume.abs().simd_ge(f64x8::splat(f64::MIN_POSITIVE))
         & volume.is_finite();
+    // Solve by Cramer's rule with one division for the three quotients.
     let s = dot(across, across).sqrt().sqrt();
     let scale = f64x8::ONE / (volume * s);
     let solved = [

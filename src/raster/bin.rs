@@ -31,6 +31,7 @@ impl Group {
         self.starts.resize(grid.num() + 1, 0);
         self.tiles.clear();
         self.tiles.reserve_exact(chunks.clone().map(|chunk| geometry.chunk(chunk).len()).sum());
+        // Count each tile's triangles one place up, so that sums over the counts are beginnings.
         for (_, triangle) in chunks.clone().flat_map(|chunk| geometry.chunk(chunk)) {
             let range = TileRange::new(triangle, grid);
             self.tiles.push(range.only());
@@ -50,6 +51,8 @@ impl Group {
                 self.triangles[self.starts[tile] as usize] = index;
                 self.starts[tile] += 1;
             };
+            // The first pass kept the tile of a triangle that lies in just one; the others' ranges
+            // are found again, so that four bytes a triangle do.
             if only == MANY {
                 TileRange::new(triangle, grid).for_each(triangle, grid, add);
             } else {
@@ -75,6 +78,7 @@ impl TileRange {
         let shift = grid.tile_size.trailing_zeros();
         let is_empty = bounds.min[0] >= bounds.max[0] || bounds.min[1] >= bounds.max[1];
         let first = [0, 1].map(|i| (bounds.min[i] - grid.area.min[i]) >> shift);
+        // An empty box ends before it begins, so that loops over its tiles find none.
         let last = [0, 1].map(|i| {
             if is_empty { first[i] - 1 } else { (bounds.max[i] - 1 - grid.area.min[i]) >> shift }
         });
@@ -96,6 +100,8 @@ impl TileRange {
     #[inline(always)]
     fn for_each(&self, triangle: &ScreenTriangle, grid: &TileGrid, mut found: impl FnMut(usize)) {
         let Self { first, last, .. } = *self;
+        // Up to two tiles a side go by the box alone: a triangle listed too often costs time, but
+        // changes no pixel.
         if last[0] - first[0] <= 1 && last[1] - first[1] <= 1 {
             (first[1]..=last[1])
                 .for_each(|y| (first[0]..=last[0]).for_each(|x| found(self.tile(x, y))));
@@ -127,6 +133,7 @@ impl Bins {
     /// Sorts the triangles of `geometry` into the tiles of `grid`.
     pub fn fill(&mut self, geometry: &Geometry, grid: &TileGrid) {
         let num_chunks = geometry.num_chunks();
+        // No more groups than chunks: none is empty, and without chunks nothing is divided by 0.
         let num_groups = num_chunks.min(rayon::current_num_threads() * GROUPS_PER_THREAD);
         self.groups.resize_with(num_groups, Group::default);
         self.groups.par_iter_mut().enumerate().for_each(|(i, group)| {

@@ -32,10 +32,13 @@ impl<'a> QuadBlock<'a> {
     pub fn pair(&self, index: usize) -> QuadPair<'a> {
         let Self { material, tile, planes, quads } = *self;
         let first = &quads[2 * index];
+        // A lone quad is paired with itself: its second half computes on valid planes, unseen.
         let (second, coverage) = match quads.get(2 * index + 1) {
             Some(second) => (second, second.coverage),
             None => (first, [0; 4]),
         };
+        // Put together in a register, not as two halves of an array that are read as a whole: such
+        // a read waits for both stores.
         let coverage = [first.coverage, coverage].map(|bytes| u64::from(u32::from_le_bytes(bytes)));
         let coverage = (coverage[0] | coverage[1] << 32).to_le_bytes();
         let origin =

@@ -18,6 +18,7 @@ impl Canvas {
     /// Takes the size of a tile, in pixels; what the pixels are then is left open.
     pub(super) fn resize(&mut self, size: [usize; 2]) {
         self.size = size;
+        // Quads at the right and the lower edge reach a pixel beyond an odd side.
         let [stride, num_rows] = size.map(|side| side.next_multiple_of(2));
         self.stride = stride;
         self.pixels.resize(stride * num_rows, [0.0; 4]);
@@ -39,6 +40,8 @@ impl Canvas {
             for lane in (0..4).filter(|lane| quad.coverage[*lane] > 0) {
                 let pixel = &mut self.pixels[(y + lane / 2) * self.stride + x + lane % 2];
                 let share = f32::from(quad.coverage[lane]) * share;
+                // Each triangle adds in the list's order, which is the same for every tiling: so
+                // are the sums.
                 let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);
                 (0..3).for_each(|c| pixel[c] += color[c]);
                 pixel[3] += share;
@@ -56,6 +59,7 @@ impl Canvas {
         let quads = quads_by_pixel([r, g, b, PixelLanes::ONE]);
         for (quad, [a, b, c, d]) in pair.iter().zip(quads) {
             let [x, y] = quad.origin.map(usize::from);
+            // One slice from the quad's first pixel to its last holds both rows.
             let rows = &mut self.pixels[y * self.stride + x..][..self.stride + 2];
             [rows[0], rows[1]] = [a, b];
             [rows[self.stride], rows[self.stride + 1]] = [c, d];
@@ -79,6 +83,7 @@ impl Canvas {
         for (row, pixels) in
             rows.iter_mut().zip(self.pixels.chunks_exact(self.stride)).take(self.size[1])
         {
+            // The row of the frame may be a pixel shorter than the canvas, whose sides are even.
             P::set_row(row, &pixels[..row.len()]);
         }
     }

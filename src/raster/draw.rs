@@ -100,6 +100,8 @@ impl Rasterizer {
             // `vec![0; n]` is zeroed lazily by the system, on the thread that first touches a page.
             frame.pixels = vec![P::default(); num_pixels];
         }
+        // Paint the tiles in parallel. Only times and counts come back to be summed, so the order
+        // in which threads end shows nowhere in the picture.
         let painter = Painter { geometry, scene, settings, grid, bins: &self.bins, clock };
         let scratches = &self.scratches;
         let mut rows = rows_by_tile(frame, &grid);
@@ -121,11 +123,14 @@ fn rows_by_tile<'a, P>(frame: &'a mut Frame<P>, grid: &TileGrid) -> Vec<&'a mut 
     let (width, tile_size) = (frame.width as usize, grid.tile_size as usize);
     let mut slices = Vec::with_capacity(grid.num() * tile_size);
     let mut rows = Vec::with_capacity(tile_size);
+    // Take from every row of a band the piece that belongs to the next tile.
     for band in frame.pixels.chunks_mut(width * tile_size) {
         rows.clear();
         rows.extend(band.chunks_mut(width).map(|row| row.chunks_mut(tile_size)));
         for _ in 0..grid.num_tiles[0] {
             slices.extend(rows.iter_mut().filter_map(Iterator::next));
+            // A band that the frame's lower edge cuts off is filled up: a tile is always as many
+            // slices.
             slices.extend((rows.len()..tile_size).map(|_| Default::default()));
         }
     }
@@ -155,16 +160,19 @@ impl Painter<'_> {
         scratch.list.clear();
         self.bins.list(tile, &mut scratch.list);
         if scratch.list.is_empty() {
+            // A tile without triangles is encoded once and copied; no buffer is touched.
             let mut background = [P::default()];
             P::set_row(&mut background, &[self.background()]);
             rows.iter_mut().for_each(|row| row.fill(background[0]));
             return RasterStats::default();
         }
+        // Find what the tile sees, then the planes of that alone.
         let start = (self.clock)();
         self.see(&rect, scratch);
         let seen = (self.clock)();
         self.find_planes(scratch);
         let found = (self.clock)();
+        // Where whole quads fill the tile, each pixel is set before it is read: no need to clear.
         let is_full = self.is_full(&rect, &scratch.quads);
         let is_set = is_full && scratch.quads.iter().all(|quad| self.is_whole(quad));
         scratch.canvas.resize(rect.size().map(|side| side as usize));
@@ -188,6 +196,8 @@ impl Painter<'_> {
 
     /// Lists the quads that the tile sees.
     fn see(&self, rect: &Rect, Scratch { list, visibility, quads, .. }: &mut Scratch) {
+        // The number of samples is a constant of the code below, so that its arrays have a size and
+        // its loops a length that the compiler knows.
         match self.settings.msaa {
             8 => {
                 visibility.draw::<8>(self.geometry, list, rect);
@@ -207,6 +217,7 @@ impl Painter<'_> {
     /// Makes the attribute planes of the triangles seen.
     fn find_planes(&self, scratch: &mut Scratch) {
         let Scratch { list, quads, slots, planes, triangles, materials, .. } = scratch;
+        // Mark the triangles that are seen; hidden ones get no planes.
         slots.clear();
         slots.resize(list.len(), NONE);
         quads.iter().for_each(|quad| slots[quad.triangle as usize] = 0);
@@ -220,10 +231,12 @@ impl Painter<'_> {
             triangles.push([mesh, triangle]);
             materials.push(self.scene.meshes[mesh as usize].material as u32);
         }
+        // From here on a quad names its triangle by the slot of its planes.
         for quad in quads.iter_mut() {
             quad.triangle = slots[quad.triangle as usize];
             quad.material = materials[quad.triangle as usize];
         }
+        // Never shrunk, so that the boxes of lit planes are there for the next tile.
         if planes.len() < triangles.len() {
             planes.resize_with(triangles.len(), AttributePlanes::default);
         }
@@ -240,9 +253,11 @@ impl Painter<'_> {
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
     ) -> (u64, f64) {
         let Scratch { quads, planes, colors, canvas, .. } = scratch;
+        // One over a power of two: shares of a pixel add up to 1 without rounding.
         let share = 1.0 / self.settings.msaa as f32;
         let block_of = |quad: &SeenQuad| quad.origin.map(|c| usize::from(c) / SHADED_BLOCK);
         let (mut num_shaded, mut shade_ms) = (0, 0.0);
+        // The list goes block by block, so each block is one run of it.
         for block in quads.chunk_by_mut(|a, b| block_of(a) == block_of(b)) {
             // The stable sort keeps the order of places and triangles.
             block.sort_by_key(|quad| quad.material);
@@ -260,6 +275,8 @@ impl Painter<'_> {
                 );
                 shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {
+                    // A pair of whole quads is stored; where others may add their share, it is
+                    // added.
                     let is_whole = pair.iter().all(|quad| self.is_whole(quad));
                     num_shaded += if is_whole {
                         canvas.set(pair, color)
@@ -280,6 +297,7 @@ impl Painter<'_> {
 
     /// Whether every sample of the tile sees a triangle.
     fn is_full(&self, rect: &Rect, quads: &[SeenQuad]) -> bool {
+        // A sample counts for one triangle at most, so only full coverage reaches the product.
         let num_seen: u64 = quads.iter().flat_map(|quad| quad.coverage).map(u64::from).sum();
         let [width, height] = [0, 1].map(|i| (rect.max[i] - rect.min[i]) as u64);
         num_seen == width * height * u64::from(self.settings.msaa)

@@ -64,10 +64,12 @@ impl<const S: usize> Edges<S> {
             let (p, q) = (corners[i], corners[(i + 1) % 3]);
             let (a, b) = (p[1] - q[1], q[0] - p[0]);
             let owns_edge = a > 0 || (a == 0 && b > 0);
+            // A product of place and slope passes 32 bits; `E / 256` at column 0, row 0 may, too.
             let [a_wide, b_wide] = [i64::from(a), i64::from(b)];
             let c = -(a_wide * i64::from(p[0]) + b_wide * i64::from(p[1])) - i64::from(!owns_edge);
             (edges.a[i], edges.b[i]) = (a, b);
             for (of_sample, offset) in edges.c.iter_mut().zip(offsets) {
+                // The shift rounds down on both sides of 0, so that the sign is kept.
                 of_sample[i] =
                     (a_wide * i64::from(offset[0]) + b_wide * i64::from(offset[1]) + c) >> 8;
             }
@@ -80,6 +82,8 @@ impl<const S: usize> Edges<S> {
     #[inline]
     pub fn misses(&self, rect: &Rect) -> bool {
         (0..3).any(|i| {
+            // Take the corner and the sample where the edge function is greatest: if it is negative
+            // there, it is so everywhere.
             let x = if self.a[i] > 0 { rect.max[0] - 1 } else { rect.min[0] };
             let y = if self.b[i] > 0 { rect.max[1] - 1 } else { rect.min[1] };
             let c = self.c.iter().map(|c| c[i]).max().unwrap_or(0);
@@ -92,6 +96,7 @@ impl<const S: usize> Edges<S> {
     /// to whole blocks.
     #[inline(always)]
     pub fn cover(&self, rect: &Rect, sink: &mut impl FnMut(Row)) {
+        // Blocks begin on multiples of 8 of the frame, so that tiles agree on them.
         let [x0, y0] = rect.min.map(|v| v & -BLOCK);
         for y in (y0..rect.max[1]).step_by(BLOCK as usize) {
             let rows = [y.max(rect.min[1]), (y + BLOCK).min(rect.max[1])];
@@ -111,33 +116,40 @@ impl<const S: usize> Edges<S> {
         rows: [i32; 2],
         sink: &mut impl FnMut(Row),
     ) {
+        // Find the edges that cross the block. The others stay 0, which counts as inside.
         let mut crossing = [(0, 0, 0); 3];
         let mut is_crossed = false;
         for (i, crossing) in crossing.iter_mut().enumerate() {
             let (a, b) = (self.a[i], self.b[i]);
             let corner =
                 self.c[sample][i] + i64::from(a) * i64::from(x) + i64::from(b) * i64::from(y);
+            // Seven steps lead from a block's first pixel to its last.
             let (step_a, step_b) = (i64::from(a) * 7, i64::from(b) * 7);
             if corner + step_a.max(0) + step_b.max(0) < 0 {
                 return;
             }
+            // The least value is negative and the greatest is not: the value at the corner fits 32
+            // bits.
             if corner + step_a.min(0) + step_b.min(0) < 0 {
                 *crossing = (a, b, corner as i32);
                 is_crossed = true;
             }
         }
         if !is_crossed {
+            // All of the block is inside every edge: no row needs a test.
             for y in rows[0]..rows[1] {
                 sink(Row { sample, x, y, mask: i32x8::splat(-1) });
             }
             return;
         }
+        // Test the rows that the edges cross, one addition an edge and row.
         let lanes = i32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
         let first =
             crossing.map(|(a, b, c)| lanes * i32x8::splat(a) + i32x8::splat(c + b * (rows[0] - y)));
         let step = crossing.map(|(_, b, _)| i32x8::splat(b));
         let mut values = first;
         for y in rows[0]..rows[1] {
+            // One negative edge function sets the sign bit, and the shift spreads it over the lane.
             let is_outside = values[0] | values[1] | values[2];
             sink(Row { sample, x, y, mask: !(is_outside >> 31_u32) });
             values = [values[0] + step[0], values[1] + step[1], values[2] + step[2]];

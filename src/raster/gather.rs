@@ -34,6 +34,8 @@ pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<S
             let pixels: [[u32x8; 2]; S] = std::array::from_fn(|s| {
                 [buffer.triangles(s, column, row), buffer.triangles(s, column, row + 1)]
             });
+            // Find out whether all samples of the four quads see the same: `xor` leaves bits where
+            // a lane differs from the first.
             let first = pixels[0][0].as_array()[0];
             let differs = pixels
                 .iter()
@@ -43,6 +45,7 @@ pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<S
             if differs != u32x8::ZERO {
                 (0..4).for_each(|quad| gather_quad(&pixels, quad, origin(quad), seen));
             } else if first != NONE {
+                // Four whole quads of one triangle: nothing to sort and nothing to count.
                 let whole = |quad| SeenQuad {
                     triangle: first,
                     origin: origin(quad),
@@ -60,12 +63,14 @@ fn parts(num_columns: usize, num_rows: usize) -> impl Iterator<Item = (usize, us
     const ACROSS: usize = SHADED_BLOCK / PART;
     let [blocks_across, blocks_down] =
         [num_columns, num_rows.div_ceil(PART)].map(|parts| parts.div_ceil(ACROSS));
+    // All parts of a block come before the next block, so that a block is one run of the list.
     (0..blocks_across * blocks_down * ACROSS * ACROSS)
         .map(move |i| {
             let (block, part) = (i / (ACROSS * ACROSS), i % (ACROSS * ACROSS));
             let [column, row] = [block % blocks_across, block / blocks_across].map(|c| c * ACROSS);
             (column + part % ACROSS, (row + part / ACROSS) * PART)
         })
+        // Blocks at the right and the lower edge may hold parts beyond the tile.
         .filter(move |&(column, row)| column < num_columns && row < num_rows)
 }
 
@@ -84,6 +89,8 @@ fn gather_quad<const S: usize>(
             if triangle == NONE {
                 continue;
             }
+            // Insert in the triangles' order. The quad has at most 32 samples, and so the walk back
+            // from the end is short.
             let mut at = seen.len();
             while at > start && seen[at - 1].triangle > triangle {
                 at -= 1;

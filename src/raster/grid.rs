@@ -37,6 +37,7 @@ impl TileGrid {
     pub fn new(settings: &Settings) -> Self {
         let Region { x, y, width, height } = settings.drawn();
         let frame = [settings.width as i32, settings.height as i32];
+        // `ALIGNED` is a power of two, so masks round down to multiples of it.
         let ends = [x + width, y + height].map(|end| (end as i32 + ALIGNED - 1) & -ALIGNED);
         let area = Rect {
             min: [x, y].map(|v| v as i32 & -ALIGNED),
@@ -70,6 +71,8 @@ pub(super) fn bounds(triangle: &ScreenTriangle, rect: &Rect, [least, most]: [i32
     let mut bounds = *rect;
     for i in 0..2 {
         let (min, max) = (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i]));
+        // The first pixel is the one whose last sample reaches the box, the last one that whose
+        // first sample does.
         bounds.min[i] = bounds.min[i].max((min - most + 255) >> 8);
         bounds.max[i] = bounds.max[i].min(((max - least) >> 8) + 1);
     }

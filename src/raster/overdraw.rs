@@ -34,10 +34,13 @@ fn count_hits<const S: usize>(geometry: &Geometry, settings: &Settings) -> Vec<u
                 let [x, y] =
                     [row.x - grid.area.min[0], row.y - grid.area.min[1]].map(|v| v as usize);
                 let start = y * width + x;
+                // The last lanes may lie to the right of the area: their places are those of the next
+                // row.
                 let num = (rect.max[0] - row.x).min(8) as usize;
                 for (count, is_covered) in
                     counts[start..start + num].iter_mut().zip(row.mask.to_array())
                 {
+                    // A covered lane has all bits set: its lowest counts 1.
                     *count = count.saturating_add((is_covered & 1) as u8);
                 }
             });

@@ -24,6 +24,8 @@ impl<T> Default for Pool<T> {
 impl<T: Default> Pool<T> {
     /// A buffer that nobody uses, or a new one.
     pub fn take(&self) -> Loan<'_, T> {
+        // The lock guards a pop or a push alone, so a task that panicked left the list whole. The
+        // last buffer given back goes first: it is the likeliest to be in a cache.
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         Loan { pool: self, buffer: Some(kept.unwrap_or_default()) }
     }

@@ -146,6 +146,7 @@ impl<'a> QuadPair<'a> {
 
 #[inline(always)]
 fn centers(origin: [[i32; 2]; 2]) -> [PixelLanes; 2] {
+    // Exact: frames are at most 32768 pixels wide, and f32 has halves far beyond that.
     let [[x0, y0], [x1, y1]] = origin.map(|quad| quad.map(|v| v as f32));
     let dx = PixelLanes::new([0.5, 1.5, 0.5, 1.5, 0.5, 1.5, 0.5, 1.5]);
     let dy = PixelLanes::new([0.5, 0.5, 1.5, 1.5, 0.5, 0.5, 1.5, 1.5]);
@@ -174,6 +175,8 @@ impl<const IS_ONE: bool> Places<'_, IS_ONE> {
 
     #[inline(always)]
     fn value(&self, [a, b]: [Plane; 2]) -> PixelLanes {
+        // Coefficients of one triangle are broadcast, which is quicker. The arithmetic after is the
+        // same either way, and so are its bits.
         let [c0, c1, c2] =
             [0, 1, 2].map(|i| if IS_ONE { PixelLanes::splat(a[i]) } else { halves(a[i], b[i]) });
         c0 * self.x + c1 * self.y + c2
@@ -181,6 +184,7 @@ impl<const IS_ONE: bool> Places<'_, IS_ONE> {
 
     #[inline(always)]
     fn w(&self) -> PixelLanes {
+        // A true division: estimates of reciprocals differ between processors.
         PixelLanes::ONE / self.value(self.planes.map(|planes| planes.inverse_w))
     }
 
@@ -191,6 +195,7 @@ impl<const IS_ONE: bool> Places<'_, IS_ONE> {
         planes: impl Fn(&AttributePlanes) -> &[Plane; N],
     ) -> [PixelLanes; N] {
         let [a, b] = self.planes.map(planes);
+        // Divided once, in `w`; each attribute takes a product.
         std::array::from_fn(|i| self.value([a[i], b[i]]) * w)
     }
 

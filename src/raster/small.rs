@@ -27,6 +27,7 @@ impl SmallEdges {
 
     #[inline(always)]
     pub(super) fn new(corners: &[[i32; 2]; 3]) -> Self {
+        // Neighbouring pixels lie 256 apart in units of 1/256 pixel.
         let lanes = i32x8::new([0, 256, 512, 768, 1024, 1280, 1536, 1792]);
         let slopes = slopes(corners);
         Self {
@@ -41,7 +42,9 @@ impl SmallEdges {
     #[inline(always)]
     pub(super) fn cover(&self, offsets: &[[i32; 2]], bounds: &Rect, sink: &mut impl FnMut(Row)) {
         for (sample, offset) in offsets.iter().enumerate() {
+            // Columns begin on multiples of 8, where the lane vectors of the tile's buffers do.
             for x in (bounds.min[0] & -BLOCK..bounds.max[0]).step_by(BLOCK as usize) {
+                // Walk down the rows: three additions each, and no products.
                 let mut values = self.at([x, bounds.min[1]], *offset);
                 for y in bounds.min[1]..bounds.max[1] {
                     let [a, b, c] = values;
@@ -60,6 +63,8 @@ impl SmallEdges {
         std::array::from_fn(|i| {
             let ([a, b], p) = (slopes[i], self.corners[i]);
             let owns_edge = a > 0 || (a == 0 && b > 0);
+            // Differences before products: it is they that are small, so that 32 bits hold all. The
+            // last term is the fill rule: 0, on an edge that is not owned, becomes negative.
             let first = a * (x * 256 + offset[0] - p[0]) + b * (y * 256 + offset[1] - p[1])
                 - i32::from(!owns_edge);
             self.along[i] + i32x8::splat(first)

@@ -50,6 +50,7 @@ impl VisibilityBuffer {
                 (last, last_index) = ((triangle.mesh, triangle.triangle), index as u32);
             }
             if index >= FIRST_LOOK {
+                // A look reads the whole tile. At doubling counts even a long list pays for few.
                 if index.is_power_of_two() {
                     self.hidden = self.farthest();
                 }
@@ -103,6 +104,7 @@ impl VisibilityBuffer {
         if num_inside == 0 {
             return;
         }
+        // `NONE` has all bits set, so `or` clears a lane, and 0 leaves one as it is.
         let is_beyond: [u32; 8] =
             std::array::from_fn(|lane| if lane as i32 >= num_inside { NONE } else { 0 });
         for row in 1..=self.num_rows * num_samples {
@@ -124,6 +126,8 @@ impl VisibilityBuffer {
         cover::<S>(triangle, &bounds(triangle, rect, offset_bounds(S as u32)), &mut |row: Row| {
             let [offset_x, offset_y] =
                 offsets[row.sample].map(|offset| offset as f32 * (1.0 / 256.0));
+            // Places count from the frame's corner and not from the tile's: the same bits of depth
+            // whatever the tiling.
             let x = lane_indices() + f32x8::splat(row.x as f32 + offset_x);
             let y = row.y as f32 + offset_y;
             let inverse_w = x * f32x8::splat(dx) + f32x8::splat(y * dy) + f32x8::splat(constant);
@@ -140,6 +144,7 @@ impl VisibilityBuffer {
     #[inline(always)]
     fn test(&mut self, at: usize, inverse_w: f32x8, mask: i32x8, index: u32x8) {
         let (stored, triangle) = (&mut self.inverse_w[at], &mut self.triangles[at]);
+        // At equal depths the earlier triangle stays. Selected by bits: no branch to guess wrong.
         let is_nearer = inverse_w.simd_gt(*stored).to_bits() & mask.cast_unsigned();
         *stored = f32x8::from_bits(is_nearer).bitselect(inverse_w, *stored);
         *triangle = is_nearer.bitselect(index, *triangle);

@@ -44,6 +44,7 @@ impl Lengths {
 
 /// The binary logarithm, linear between powers of two: the same bits on every machine.
 pub fn pseudo_log(x: f32) -> f32 {
+    // A float's exponent is the whole part, and its mantissa, from 1 to 2, the rest.
     let bits = x.max(f32::MIN_POSITIVE).to_bits();
     ((bits >> 23) as i32 - 127) as f32 + (f32::from_bits(bits & 0x007f_ffff | 0x3f80_0000) - 1.0)
 }
@@ -57,6 +58,7 @@ pub fn pseudo_exp(y: f32) -> f32 {
 /// The angle of a direction as a number from 0 to 4 that grows evenly along the diamond `|x| + |y|
 /// = 1`.
 pub fn diamond_angle(x: f32, y: f32) -> f32 {
+    // The least divisor gives a direction of no length the angle 0.
     let part = y / (x.abs() + y.abs()).max(f32::MIN_POSITIVE);
     let angle = if x < 0.0 {
         2.0 - part
@@ -65,6 +67,7 @@ pub fn diamond_angle(x: f32, y: f32) -> f32 {
     } else {
         part
     };
+    // Just under 4 may be rounded to 4, which is angle 0 again.
     if angle < 4.0 { angle } else { 0.0 }
 }
 

@@ -55,6 +55,7 @@ impl HeightField {
 
     /// The level that a ray of that many texels begins on: a node holds about a fourth of its way.
     pub fn first_level(&self, length: f32) -> i32 {
+        // The exponent is the logarithm rounded down; a fourth is two levels less.
         let exponent = (length.max(1.0).to_bits() >> 23) as i32 - 127;
         (exponent - 2).clamp(0, self.num_levels() - 1)
     }
@@ -72,6 +73,7 @@ impl HeightField {
     /// The heights, 0 to [`FULL`](crate::texture::FULL), at the corners of a folded cell: (0,0),
     /// (1,0), (0,1), (1,1).
     pub fn corners(&self, x: i32, y: i32) -> [f32; 4] {
+        // The row above the last is the last again or, where the pattern repeats, the first.
         let above = match y + 1 == self.size[1] {
             true if self.is_clamped => y,
             true => 0,
@@ -103,12 +105,15 @@ impl HeightField {
     fn build_nodes(&self) -> Vec<NodeLevel> {
         let [w, h] = self.size.map(|n| n as usize);
         let max_of = |cells: [f32; 4]| cells.into_iter().fold(0.0, f32::max) as u16;
+        // Find the greatest height of each cell, for the first level only: the march has the cells'
+        // heights themselves.
         let mut cells = NodeLevel { width: w, maxima: vec![0; w * h] };
         for (i, cell) in cells.maxima.iter_mut().enumerate() {
             *cell = max_of(self.corners((i % w) as i32, (i / w) as i32));
         }
         let mut levels = Vec::new();
         let (mut size, mut finer) = ([w, h], cells);
+        // Halve the sides, rounded up, until one node holds all.
         while size != [1, 1] {
             let coarser = size.map(|n| n.div_ceil(2));
             let mut maxima = vec![0; coarser[0] * coarser[1]];

@@ -81,6 +81,7 @@ impl LevelLoss {
         let Some(compared) = self.compared else { return 0 };
         let size = surface.levels()[compared].size();
         let displacements = PROBES.map(|angle| self.lengths.displacement(length, angle));
+        // See the relief on the base level, which loses nothing.
         let exact = displacements
             .map(|displacement| seen_image(surface, Seen::Heights, 0, size, displacement));
         let is_lost = |level: usize| {
@@ -90,6 +91,7 @@ impl LevelLoss {
             });
             (squares.sum::<f32>() / PROBES.len() as f32).sqrt() > MOST_LOSS[level - 1]
         };
+        // Level 1 first: where it loses too much, level 2 need not be swept.
         if is_lost(1) { 2 } else { u8::from(is_lost(2)) }
     }
 }

@@ -107,6 +107,7 @@ struct Nodes {
 impl Rays {
     /// Moves every ray by one node or one level.
     fn advance(&mut self, field: &HeightField) {
+        // Find each ray's cell, and the node that holds it.
         let place =
             [self.start[0] + self.step[0] * self.depth, self.start[1] + self.step[1] * self.depth];
         // A ray on the edge of a cell is in the one that it moves into.
@@ -118,12 +119,14 @@ impl Rays {
         self.climb(field, &folded);
         let nodes = self.nodes(field, cell, folded);
         let is_cell = self.level.simd_eq(i32x8::splat(0));
+        // Find where the ray leaves the node, and whether it is above the relief until there.
         let heights = self.node_heights(field, &nodes.folded);
         let exit = self.depth_at_exit(&place, &nodes);
         let leave = (exit + self.nudge).fast_min(PixelLanes::ONE);
         // The ray descends, so it is lowest where it leaves the node.
         let is_above = mask(leave.simd_lt(PixelLanes::ONE - heights));
         let is_open = is_cell & !self.is_done;
+        // Corners are looked up lane by lane: only worth it when a ray is in a cell.
         let hit = if is_open.any() {
             self.cell_hit(field, &place, &nodes, is_open)
         } else {
@@ -132,6 +135,7 @@ impl Rays {
         // A crossing beyond the edge is the next node's.
         let is_hit = is_open & mask(hit.simd_le(exit));
         let is_passed = (is_cell | is_above) & !is_hit & !self.is_done;
+        // Move to the hit, past the node or, where it is opened, one level down.
         self.depth = lanes(is_hit).select(hit, lanes(is_passed).select(leave, self.depth));
         let up = as_unsigned(self.level + i32x8::splat(1));
         self.parent =
@@ -157,9 +161,11 @@ impl Rays {
         let is_cell = self.level.simd_eq(i32x8::splat(0));
         let edges = [0, 1].map(|axis| {
             let (size, at) = (i32x8::splat(field.size[axis]), folded[axis]);
+            // The cell -1, beyond a clamped edge, belongs to the first node.
             let first = is_cell.select(at, (at.max(i32x8::splat(0)) >> by) << by);
             let last = (first + (i32x8::splat(1) << by)).min(size);
             if !field.is_clamped {
+                // Move the edges from the stored pattern to the repeat that the ray is in.
                 let offset = cell[axis] - PixelLanes::from_i32x8(at);
                 return [
                     PixelLanes::from_i32x8(first) + offset,
@@ -214,18 +220,21 @@ impl Rays {
     ) -> PixelLanes {
         let (xs, ys, is_open) =
             (nodes.folded[0].to_array(), nodes.folded[1].to_array(), is_open.to_array());
+        // Look up the corners of open cells; what the other lanes compute is not asked for.
         let mut corners = [[0.0_f32; 8]; 4];
         for lane in (0..8).filter(|&lane| is_open[lane] != 0) {
             let heights = field.corners(xs[lane], ys[lane]);
             (0..4).for_each(|i| corners[i][lane] = heights[i]);
         }
         let [h00, h10, h01, h11] = corners.map(|c| PixelLanes::new(c) * (1.0 / FULL_F32));
+        // Put the ray into the patch, from where the ray is now.
         let (x, y) = (place[0] - nodes.cell[0], place[1] - nodes.cell[1]);
         let (hx, hy, hxy) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
         let [dx, dy] = self.step;
         let a = hxy * dx * dy;
         let b = PixelLanes::ONE + hx * dx + hy * dy + hxy * (x * dy + y * dx);
         let c = self.depth - 1.0 + h00 + hx * x + hy * y + hxy * x * y;
+        // A ray that is in the relief already has its hit where it is.
         c.simd_ge(PixelLanes::ZERO).select(self.depth, self.depth + first_root(a, b, c))
     }
 }

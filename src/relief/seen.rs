@@ -43,6 +43,8 @@ pub fn seen_image(
     let source = &surface.levels()[level];
     let [to, from] = [source, surface.base()].map(|level| level.size().map(|n| n as f32));
     let (du, dv) = (du * (to[0] / from[0]), dv * (to[1] / from[1]));
+    // Rows are walked along the longer axis, so that lines shift by at most a texel from one row to
+    // the next. The level has a copy turned for that.
     let is_turned = du.abs() > dv.abs();
     let rows = source.rows(is_turned);
     let mut sweep = if is_turned {
@@ -118,12 +120,14 @@ impl<'a> Sweep<'a> {
         let last = num_rows + self.depth as i32 + 1;
         for i in 1 - lead..=last {
             let row = self.row(first, i);
+            // Lanes beyond the last line set no record.
             let records = row.place.simd_gt(horizon).to_bitmask() & ((1 << num_lines) - 1);
             if records != 0 {
                 let from = horizon.fast_max(TexelLanes::splat(begin));
                 let to = row.place.fast_min(TexelLanes::splat(end));
                 self.add(first, [from, to], [&previous, &row], records);
                 horizon = horizon.fast_max(row.place);
+                // From the period's end on, all records are those of the next one.
                 if horizon.simd_ge(TexelLanes::splat(end)).all() {
                     return;
                 }
@@ -190,6 +194,8 @@ impl<'a> Sweep<'a> {
                 .to_array();
             let y = ((eta + 0.5) * self.scale[1]).floor().fast_trunc_int().to_array();
             let sums = [value(0), value(1), value(2), length].map(TexelLanes::to_array);
+            // Add lane by lane: lines may fall into one texel, which lanes could not add to at
+            // once.
             let mut left = records;
             while left != 0 {
                 let lane = left.trailing_zeros() as usize;

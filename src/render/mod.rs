@@ -71,6 +71,7 @@ impl Renderer {
         let mut renderer = Self {
             prepared: PreparedScene::new(&scene),
             scene,
+            // Replaced below, on the one path that checks settings and builds their tables.
             settings: Settings::default(),
             pool: Pool::default(),
             geometry: Geometry::default(),
@@ -85,6 +86,7 @@ impl Renderer {
     /// # Errors
     /// Names the first setting that is out of its range.
     pub fn set_settings(&mut self, settings: Settings) -> Result<()> {
+        // Checked first: settings that fail leave the renderer as it was.
         settings.validate()?;
         self.prepared.make_ready(&settings);
         self.settings = settings;
@@ -107,6 +109,8 @@ impl Renderer {
     /// # Errors
     /// Says so when the region does not lie within the frame.
     pub fn set_region(&mut self, region: Option<Region>) -> Result<()> {
+        // A region is valid only within a frame of that size, so the settings are checked as a
+        // whole, and get back what they had if they fail.
         let old = std::mem::replace(&mut self.settings.region, region);
         self.settings.validate().inspect_err(|_| self.settings.region = old)
     }
@@ -146,6 +150,7 @@ impl Renderer {
     fn draw<P: Pixel>(&mut self, frame: &mut Frame<P>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
         let Self { scene, settings, prepared, pool, geometry, rasterizer } = self;
         let start = clock();
+        // All triangles are projected before the first tile begins: its list must be complete.
         geometry.project(scene, settings);
         let projected = clock();
         let shader = Shader::new(scene, settings, prepared, pool);
@@ -159,6 +164,8 @@ impl Renderer {
         let work = shader.work();
         Stats {
             geometry_ms: projected - start,
+            // Tiles add up their shading over all threads. Its share of the frame's time is an
+            // estimate, and may be more than there was.
             raster_ms: (clock()
                 - projected
                 - counts.shade_ms / rayon::current_num_threads() as f64)

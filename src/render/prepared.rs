@@ -26,6 +26,7 @@ impl PreparedScene {
     /// The surfaces with their height fields.
     pub(crate) fn new(scene: &Scene) -> Self {
         let mut surfaces: Vec<Arc<Surface>> = Vec::new();
+        // Surfaces are told apart by address: comparing texels would read them all.
         let mut index_of = |surface: &Arc<Surface>| {
             surfaces.iter().position(|other| Arc::ptr_eq(other, surface)).unwrap_or_else(|| {
                 surfaces.push(surface.clone());
@@ -37,6 +38,8 @@ impl PreparedScene {
             .iter()
             .map(|material| material.surface.as_ref().map(&mut index_of))
             .collect();
+        // Give out what tables may cost in the order of materials. After a surface that is too
+        // large, a smaller one may still fit.
         let mut left = MOST_FAR_TEXELS;
         let has_far_field = surfaces.iter().map(|surface| {
             let num_texels = surface.base().size().iter().product();
@@ -44,6 +47,7 @@ impl PreparedScene {
             left -= if fits { num_texels } else { 0 };
             fits
         });
+        // Collected before the parallel step, since each answer hangs on those before it.
         let has_far_field: Vec<bool> = has_far_field.collect();
         let surfaces: Vec<_> = surfaces
             .into_par_iter()
@@ -59,6 +63,7 @@ impl PreparedScene {
 
     /// Makes what frames with these settings need, so that no frame has to wait for it.
     pub(crate) fn make_ready(&self, settings: &Settings) {
+        // Frames without relief draw the flat surfaces, which ask for none of this.
         if settings.parallax {
             let is_lit = settings.lighting == Lighting::Lit;
             self.surfaces

@@ -59,6 +59,7 @@ impl<'a> Shader<'a> {
 
     /// What filtering took so far.
     pub(super) fn work(&self) -> Work {
+        // Relaxed is enough: the counts are read when all tiles are done.
         let [num_tested, num_averaged] =
             self.num_texels.each_ref().map(|num| num.load(Ordering::Relaxed));
         Work { num_tested, num_averaged }
@@ -87,9 +88,11 @@ impl<'a> Shader<'a> {
     /// Pixels of a material without a texture.
     fn plain(&self, pair: &QuadPair, material: &Material) -> [PixelLanes; 3] {
         let mut colors = [Vec3::ZERO; 8];
+        // Helper lanes stay black: nothing adds them to a pixel.
         for lane in pair.covered() {
             colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
                 Some(lights) => {
+                    // Nothing bends the normal here: it is z in the surface's own frame.
                     material.diffuse * lights.diffuse(Vec3::Z) + lights.specular(Vec3::Z, material)
                 }
                 None => material.diffuse,
@@ -108,7 +111,9 @@ impl<'a> Shader<'a> {
     ) {
         let ShadeScratch { filter, footprints, lights, filtered } = scratch;
         lights.clear();
+        // Find where the pixels lie in the texture.
         self.footprints(ground.prepared, (block, pairs.clone()), footprints);
+        // List the lights of covered pixels alone, pair by pair and lane by lane.
         if self.is_lit() {
             let pairs = pairs.clone().map(|index| block.pair(index));
             lights.extend(pairs.flat_map(|pair| {
@@ -116,11 +121,13 @@ impl<'a> Shader<'a> {
                     .filter_map(move |lane| self.lights_at(&pair, lane, pixel_center(&pair, lane)))
             }));
         }
+        // Filter all pairs at once, so that pixels near each other can share work.
         filtered.clear();
         filtered.resize(pairs.len(), Filtered::default());
         let batch = Batch { pixels: footprints, lights, is_alone: false };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
         if self.is_lit() {
+            // Light the means; the lights come in the order in which they were listed.
             let mut lights = lights.iter();
             colors.extend(footprints.iter().zip(filtered.iter()).map(|(pixels, filtered)| {
                 let mut colors = [Vec3::ZERO; 8];
@@ -145,6 +152,7 @@ impl<'a> Shader<'a> {
         footprints.clear();
         footprints.extend(pairs.map(|index| {
             let pair = block.pair(index);
+            // Where there is no relief, the view changes nothing and is not computed.
             let view = if field.is_some() { pair.view() } else { [PixelLanes::ZERO; 3] };
             Footprints::of_quads(&pair.uv, &view, field, &self.rule, pair.covered_bits())
         }));
@@ -161,18 +169,22 @@ impl<'a> Shader<'a> {
     ) -> [PixelLanes; 3] {
         let field = ground.prepared.field();
         let none = [PixelLanes::ZERO; 3];
+        // All samples share their pixel's derivatives, those of the flat polygon.
         let pixels =
             Footprints::of_quads(&pair.uv, &none, None, &FootprintRule::FLAT, pair.covered_bits());
         let mut colors = [Vec3::ZERO; 8];
         for lane in pair.covered() {
             let planes = pair.planes[lane / 4];
             let [center_x, center_y] = pixel_center(pair, lane);
+            // Sum up what the samples see, one by one in their order, so that the bits are always
+            // equal.
             let (mut sum, mut num) = (Vec3::ZERO, 0.0);
             for &([dx, dy], num_samples) in &samples.groups {
                 let (x, y) = (dx + center_x, dy + center_y);
                 // Beyond the horizon there is no surface to sample.
                 let is_before =
                     eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
+                // The last group may hold fewer than eight samples.
                 let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
                 let (uv, view) = planes.at(x, y);
                 let rays = Footprints::of_samples(
@@ -198,6 +210,7 @@ impl<'a> Shader<'a> {
                     num += 1.0;
                 }
             }
+            // A pixel none of whose rays meets the surface is black and not NaN.
             colors[lane] = sum / f32::max(num, 1.0);
         }
         in_lanes(&colors)
@@ -218,6 +231,7 @@ impl<'a> Shader<'a> {
         let Some(lights) = lights else { return color };
         let normal = Vec3::from(texel.normal);
         let specular = lights.specular(normal, ground.material);
+        // Such a filter has the diffuse light in its mean, texel by texel; the highlight is left.
         if self.settings.filter.asks_for_lights() {
             color + specular
         } else {
@@ -230,6 +244,7 @@ impl<'a> Shader<'a> {
         let planes: &AttributePlanes = pair.planes[lane / 4];
         let lit = planes.lit.as_deref().filter(|_| self.is_lit())?;
         let [a, b, c] = planes.inverse_w;
+        // Divided once for all twelve coordinates.
         let w = 1.0 / (a * x + b * y + c);
         let at = |planes: &[Plane; 3]| Vec3::from(planes.map(|[a, b, c]| (a * x + b * y + c) * w));
         let LitPlanes { position, normal, tangent_u, tangent_v } = lit;
@@ -251,6 +266,7 @@ impl Ground<'_> {
     /// Stored colours as the material shows them.
     #[inline(always)]
     fn tinted(&self, stored: &[PixelLanes; 3]) -> [PixelLanes; 3] {
+        // Products in the order of `lit`, so that a colour without light has the same bits in both.
         let scale = self.scale();
         std::array::from_fn(|c| stored[c] * self.material.diffuse[c] * scale)
     }
