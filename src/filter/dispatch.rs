@@ -80,6 +80,7 @@ impl Filter {
     ) -> Vec<[LevelChoice; 8]> {
         let surface = prepared.surface();
         let last = surface.last_level();
+        // Beyond the last level there is none to blend with.
         let blended = |(level, blend): (usize, f32)| LevelChoice {
             level: level.min(last),
             blend: if level >= last { 0.0 } else { blend },
@@ -136,6 +137,7 @@ impl Filter {
             Self::Truth(Rays { samples }) => {
                 Some(SampleOffsets::new(&truth::offsets(*samples), true))
             }
+            // Each is named, so that a new filter cannot be forgotten here.
             Self::Nearest
             | Self::Bilinear
             | Self::Trilinear(_)
@@ -170,6 +172,7 @@ impl Prepared {
     pub fn colors(&self, filter: &Filter, footprints: &[Footprint]) -> Vec<[f32; 3]> {
         let pixels: Vec<_> = footprints.chunks(8).map(Footprints::pack).collect();
         let mut filtered = vec![Filtered::default(); pixels.len()];
+        // Who asks for footprints wants exact weights; only pictures can do with fewer bins.
         let batch = Batch { pixels: &pixels, lights: &[], is_fine: true };
         filter.colors(self, &batch, &mut Scratch::default(), &mut filtered);
         let scale = self.surface().color_scale() / FULL_F32;
