@@ -29,6 +29,7 @@ pub(super) fn corners(texels: &Rows, x: i32x8, y: i32x8) -> [Corners; 2] {
     }
     let first = [x.as_array()[0] - BEFORE, y.as_array()[0] - ABOVE];
     let (columns, rows) = (x - i32x8::splat(first[0]), y - i32x8::splat(first[1]));
+    // The last of sixteen columns and of 32 rows is left for the texels to the right and below.
     if (beyond(columns, 14) | beyond(rows, 30)).to_bitmask() == 0 {
         picked(texels, first, simd::as_unsigned(columns), simd::as_unsigned(rows))
     } else {
@@ -46,6 +47,7 @@ fn beyond(places: i32x8, most: i32) -> i32x8 {
 #[inline(always)]
 fn picked(texels: &Rows, first: [i32; 2], columns: u32x8, rows: u32x8) -> [Corners; 2] {
     let numbers = join_words([columns, columns + 1]);
+    // Mark the rows that any place needs: two neighbouring bits each.
     let needed = (u32x8::splat(3) << rows).to_array().into_iter().fold(0, |all, bits| all | bits);
     let top = needed.trailing_zeros();
     let num_rows = 32 - needed.leading_zeros() - top;
@@ -55,6 +57,7 @@ fn picked(texels: &Rows, first: [i32; 2], columns: u32x8, rows: u32x8) -> [Corne
     let mut down = join_words([rows, rows]) - u32x16::splat(top);
     let mut corners = [Corners::default(); 2];
     for _ in 0..num_rows {
+        // One row past a place its count has wrapped around: that row is the lower one.
         let places = [down.simd_eq(u32x16::ZERO), down.simd_eq(u32x16::splat(u32::MAX))];
         take(
             &texels.words()[starts.next() + column..],
@@ -96,12 +99,15 @@ fn row_by_row(texels: &Rows, x: i32x8, y: i32x8) -> [Corners; 2] {
     let mut left = [u8::MAX; 2];
     while left != [0; 2] {
         let place = (left[0] | left[1]).trailing_zeros() as usize;
+        // Take the upper row of the first place that waits, or else its lower one, and serve all
+        // other places that it reaches.
         let row = y.as_array()[place] + i32::from(left[0] >> place & 1 == 0);
         let first = x.as_array()[place] - BEFORE;
         let columns = x - i32x8::splat(first);
         let is_near = !(beyond(columns, 14).to_bitmask() as u8);
         let of_row =
             [row, row - 1].map(|row| y.simd_eq(i32x8::splat(row)).to_bitmask() as u8 & is_near);
+        // Places that are not near pick anything within bounds: they are left out below.
         let columns = simd::as_unsigned(columns) & u32x8::splat(15);
         let numbers = join_words([columns, columns + 1]);
         let [is_above, is_below] = of_row.map(|places| join_words([simd::bits(places); 2]));

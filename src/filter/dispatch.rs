@@ -80,6 +80,7 @@ impl Filter {
     ) -> Vec<[LevelChoice; 8]> {
         let surface = prepared.surface();
         let last = surface.last_level();
+        // Beyond the last level there is none to blend with.
         let blended = |(level, blend): (usize, f32)| LevelChoice {
             level: level.min(last),
             blend: if level >= last { 0.0 } else { blend },
@@ -136,6 +137,7 @@ impl Filter {
             Self::Truth(Rays { samples }) => {
                 Some(SampleOffsets::new(&truth::offsets(*samples), true))
             }
+            // Each is named, so that a new filter cannot be forgotten here.
             Self::Nearest
             | Self::Bilinear
             | Self::Trilinear(_)

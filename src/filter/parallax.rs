@@ -32,6 +32,7 @@ pub(super) fn trace(surface: &Surface, footprint: &Footprint, num_samples: u32) 
     let size = levels::parallax_size(surface.base(), footprint, num_samples);
     let place = |depth: f32| [base[0] + displacement[0] * depth, base[1] + displacement[1] * depth];
     let depth_of = |depth: f32| 1.0 - height(surface, place(depth), size);
+    // Step down until the ray is under the relief.
     let mut above = 0.0;
     let mut gap_above = depth_of(0.0);
     let mut hit = 0.0;
@@ -40,6 +41,7 @@ pub(super) fn trace(surface: &Surface, footprint: &Footprint, num_samples: u32) 
             let depth = f32::from(i) / f32::from(NUM_STEPS);
             let gap = depth_of(depth) - depth;
             if gap <= 0.0 {
+                // Take the gap for linear between the last two depths: a secant step.
                 hit = above + (depth - above) * gap_above / (gap_above - gap);
                 break;
             }

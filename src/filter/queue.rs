@@ -46,6 +46,7 @@ impl Queue {
     #[inline(always)]
     pub(super) fn push(&mut self, covered: u8, index: usize, group: &Group) {
         if self.num.is_multiple_of(8) && covered == u8::MAX {
+            // A whole pair at a group's beginning stays as it is: no lane is moved.
             let numbers = std::array::from_fn(|lane| (8 * index + lane) as u32);
             (self.groups[self.num / 8], self.pixels[self.num / 8]) = (*group, numbers);
             self.num += 8;
@@ -59,6 +60,7 @@ impl Queue {
         while covered != 0 {
             let lane = covered.trailing_zeros() as usize;
             covered &= covered - 1;
+            // The last pair may run over into the one group that is there beyond those looked up.
             let to = &mut self.groups[self.num / 8];
             for (to, from) in to.iter_mut().zip(group) {
                 to.as_mut_array()[self.num % 8] = from.as_array()[lane];
@@ -89,6 +91,7 @@ impl Queue {
     pub(super) fn hand_out(&self, group: usize, found: [PixelLanes; 3], out: &mut [Filtered]) {
         let pixels = &self.pixels[group];
         if pixels[0].is_multiple_of(8) && pixels[7] == pixels[0] + 7 {
+            // All eight are one pair's: no lane is moved.
             out[pixels[0] as usize / 8].color = found;
         } else {
             let num = (self.num - 8 * group).min(8);

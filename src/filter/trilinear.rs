@@ -45,6 +45,7 @@ pub(super) fn colors(surface: &Surface, batch: &Batch, out: &mut [Filtered]) {
     let mut pixels = batch.pixels.iter().enumerate();
     let mut queue = Queue::new();
     loop {
+        // Line up covered pixels until as many wait as are looked up at once.
         while let Some((index, pixels)) = if queue.is_full() { None } else { pixels.next() } {
             let [u, v] = pixels.hit;
             queue.push(pixels.covered, index, &[u, v, longest_sides(surface.base(), pixels)]);
@@ -52,6 +53,7 @@ pub(super) fn colors(surface: &Surface, batch: &Batch, out: &mut [Filtered]) {
         if queue.is_empty() {
             return;
         }
+        // Look up the whole groups; one that is not waits for more, unless it is all that is left.
         queue.fill_up();
         look_up(surface, queue.groups(), |group, found| queue.hand_out(group, found, out));
         queue.advance();
@@ -77,6 +79,7 @@ pub fn look_up(
         let is_blended = spots.blend.simd_gt(PixelLanes::ZERO).any();
         let [fine, coarse] = [0, 1].map(|i| (of_spots.rows[i], &spots.spots[i]));
         let color = |(rows, spot): (&Rows, &Spot)| spot.color(rows);
+        // Read the coarser level only where a pixel has a share of it.
         let color = match (spots.is_same, is_blended) {
             (false, _) => on_several_levels(surface, group),
             (true, true) => mixed(&color(fine), &color(coarse), spots.blend),
@@ -134,6 +137,7 @@ fn on_several_levels(surface: &Surface, &[u, v, size]: &[PixelLanes; 3]) -> [Pix
         let at = |index: i32| lanes(levels.simd_eq(i32x8::splat(index)));
         let is_fine = at(index as i32);
         let is_coarse = at(index as i32 - 1) & blend.simd_gt(PixelLanes::ZERO);
+        // Look all lanes up on a level that any of them is on, and keep those.
         if (is_fine | is_coarse).any() {
             let found = Spot::new(level.texels_per_repeat(), [u, v]).color(level.rows(false));
             fine = [0, 1, 2].map(|c| is_fine.select(found[c], fine[c]));
@@ -155,6 +159,7 @@ impl Spot {
         let floors = [at[0].floor(), at[1].floor()];
         let bound = PixelLanes::splat(FARTHEST);
         let corner = |floor: PixelLanes| floor.fast_max(-bound).fast_min(bound).fast_trunc_int();
+        // Taken from the floor before its bound, the part is 0 to 1 at any place.
         let part = [at[0] - floors[0], at[1] - floors[1]];
         Self { corner: [corner(floors[0]), corner(floors[1])], part }
     }
@@ -164,6 +169,7 @@ impl Spot {
     fn color(&self, rows: &Rows) -> [PixelLanes; 3] {
         let [x, y] = self.corner;
         let [red_green, blue] = corners(rows, x, y);
+        // Blend the rows first: left and right texels lie in one vector.
         let part = join([self.part[1], self.part[1]]);
         let mix = |channel: fn(u32x16) -> LineLanes, Corners { above, below }: Corners| {
             let [above, below] = [channel(above), channel(below)];

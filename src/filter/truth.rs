@@ -22,6 +22,7 @@ pub(super) fn offsets(num: u32) -> Vec<[f32; 2]> {
         let share = (f64::from(i) + 0.5) / f64::from(num);
         let radius = (-0.5 * ln(1.0 - share * edge)).sqrt();
         offsets.push([(radius * turn[0]) as f32, (radius * turn[1]) as f32]);
+        // Turned by products, since sines of the platform differ from machine to machine.
         let ([c, s], [x, y]) = (GOLDEN_TURN, turn);
         turn = [x * c - y * s, x * s + y * c];
     }
@@ -34,6 +35,7 @@ fn ln(y: f64) -> f64 {
     let root = y.sqrt().sqrt();
     let z = (root - 1.0) / (root + 1.0);
     let square = z * z;
+    // With z within -0.29 to 0 the terms after the twelfth are less than 1e-14 of the first.
     let series = (0..12).rev().fold(0.0, |sum, i| sum * square + 1.0 / f64::from(2 * i + 1));
     8.0 * z * series
 }
@@ -44,6 +46,7 @@ pub(super) fn sample(surface: &Surface, place: [f32; 2]) -> Texel {
     let [u, v] = level.in_texels(place).map(|c| c - 0.5);
     let (x, y) = (u.floor(), v.floor());
     let (fx, fy) = (u - x, v - y);
+    // Interpolated here and not by `points`: the truth shares no look-ups with what it judges.
     let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
     let mut result = Texel::default();
     for (i, weight) in weights.into_iter().enumerate() {

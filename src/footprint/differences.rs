@@ -35,6 +35,7 @@ type Pair = [[PixelLanes; 2]; 2];
 #[inline(always)]
 pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &FootprintRule) -> Pair {
     if rule.formulas == Formulas::Printed {
+        // The printed formulas are there to be looked at, not to be fast: they go lane by lane.
         return letter_by_letter(uv, offset, rule);
     }
     let flat = || in_quads(*uv);
@@ -45,6 +46,7 @@ pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &Footpr
     if rule.max_stretch == 0.0 {
         return displaced;
     }
+    // Compare squares of lengths, which need no roots.
     let most = rule.max_stretch * rule.max_stretch;
     let [dx, dy] = flat();
     [without_jump(displaced[0], dx, most), without_jump(displaced[1], dy, most)]
@@ -65,6 +67,7 @@ fn in_quads([u, v]: [PixelLanes; 2]) -> Pair {
 /// times larger.
 fn without_jump(displaced: [PixelLanes; 2], flat: [PixelLanes; 2], most: f32) -> [PixelLanes; 2] {
     let squared = |[u, v]: [PixelLanes; 2]| u * u + v * v;
+    // Made finite first: a NaN would compare as no jump, and stay.
     let [displaced, flat] = [displaced, flat].map(|derivative| derivative.map(finite));
     let is_jump = squared(displaced).simd_gt(squared(flat) * most);
     [0, 1].map(|axis| is_jump.select(flat[axis], displaced[axis]))
@@ -79,6 +82,7 @@ fn letter_by_letter(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &Footp
         // The quad's pixel at the low end of this lane's row and column.
         let (row, column) = (lane & !1, lane & !2);
         let at = |i: usize| Corner { u: u[i], v: v[i], du: m[i], dv: r[i] };
+        // Each call gives one axis; what stands for the other neighbour is not looked at.
         let [dudx, dvdx, _, _] = at_pixel(at(row), at(row + 1), at(row), rule);
         let [_, _, dudy, dvdy] = at_pixel(at(column), at(column), at(column + 2), rule);
         [dudx, dvdx, dudy, dvdy]

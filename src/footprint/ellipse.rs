@@ -106,12 +106,14 @@ impl Ellipse {
 
     /// Greatest |V| inside.
     pub fn half_height(&self) -> f32 {
+        // F does not cancel against the determinant: a printed one differs from it.
         (4.0 * self.a * self.f / (4.0 * self.a * self.c - self.b * self.b).max(f32::MIN_POSITIVE))
             .sqrt()
     }
 
     /// The least and greatest U inside on the line of constant V; `None` where the line misses.
     pub fn row(&self, v: f32) -> Option<[f32; 2]> {
+        // Solve A U^2 + B V U + C V^2 - F = 0 for U.
         let (half_b, c) = (self.b * 0.5 * v, self.c * v * v - self.f);
         let discriminant = half_b * half_b - self.a * c;
         (discriminant >= 0.0).then(|| {
@@ -132,6 +134,7 @@ pub struct RowQuadric {
 impl RowQuadric {
     /// The quadric of the row at V.
     pub fn new(ellipse: &Ellipse, v: f32) -> Self {
+        // Divide by F once a row, and not at each texel.
         let inverse_f = 1.0 / ellipse.f;
         Self {
             a: ellipse.a * inverse_f,

@@ -42,6 +42,7 @@ impl Ellipses {
     /// The ellipses with the squares of their half axes less by `amount`, but by half at most.
     #[inline]
     pub fn sharpened(self, amount: f32) -> Self {
+        // Variances add up, so what a level has blurred comes off both squares alike.
         let amount = (self.short * 0.5).fast_min(PixelLanes::splat(amount));
         let (short, long) = (self.short - amount, self.long - amount);
         Self { a: self.a - amount, b: self.b, c: self.c - amount, f: short * long, short, long }
@@ -54,6 +55,7 @@ impl Ellipses {
         let half = (difference * difference * 0.25 + b * b * 0.25).sqrt();
         let least = PixelLanes::splat(LEAST_AXIS * LEAST_AXIS);
         let long = ((a + c) * 0.5 + half).fast_max(least);
+        // By the product of both and not by a difference, which would cancel for thin ellipses.
         let short = determinant / long;
         let lift = ((long * (1.0 / (max_anisotropy * max_anisotropy))).fast_max(least) - short)
             .fast_max(zero);

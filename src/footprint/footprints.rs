@@ -90,6 +90,7 @@ impl Footprints {
         let [base, hit] = [lanes(&|p| p.base), lanes(&|p| p.hit)];
         let [dx, dy, displacement] =
             [lanes(&|p| p.dx), lanes(&|p| p.dy), lanes(&|p| p.displacement)];
+        // Lanes without a pixel are 0, and nobody asks for them.
         let covered = if pixels.len() < 8 { (1 << pixels.len()) - 1 } else { u8::MAX };
         Self { base, hit, dx, dy, displacement, covered }.made_finite()
     }
@@ -108,6 +109,7 @@ impl Footprints {
         let hit = [uv[0] + offset[0], uv[1] + offset[1]];
         let is_place = hit.map(|c| c.abs().simd_lt(PixelLanes::splat(FARTHEST)));
         let covered = covered & (is_place[0] & is_place[1]).to_bitmask() as u8;
+        // A ray alone has no neighbours to take differences from: the pixel's serve all.
         let [dx, dy] = [pixel.dx, pixel.dy].map(|derivative| derivative.map(PixelLanes::splat));
         Self { base: *uv, hit, dx, dy, displacement, covered }.bounded()
     }
@@ -186,6 +188,7 @@ fn traced(
 ) -> (Uv, Uv) {
     let Some(field) = field else { return ([PixelLanes::ZERO; 2], [PixelLanes::ZERO; 2]) };
     let displacement = displacement(view, field.relief_depth);
+    // The march is the dear part: filters that never ask for the hit go without.
     if !is_traced {
         return (displacement, [PixelLanes::ZERO; 2]);
     }
@@ -204,6 +207,7 @@ fn bounded_place(place: Uv) -> Uv {
 #[inline(never)]
 fn shortened(derivative: Uv) -> Uv {
     let [u, v] = derivative.map(finite);
+    // Scale both parts alike, so that the direction stays.
     let longest = u.abs().fast_max(v.abs());
     let is_long = longest.simd_gt(PixelLanes::splat(MAX_LENGTH));
     let scale = is_long.select(PixelLanes::splat(MAX_LENGTH) / longest, PixelLanes::ONE);

@@ -70,6 +70,7 @@ pub fn of_sizes(size: PixelLanes, last: usize) -> (i32x8, PixelLanes) {
     let is_large = mask(size.simd_gt(PixelLanes::ONE));
     let level = ((bits >> 23_i32) - 127) & is_large;
     let mantissa = lanes(bits & i32x8::splat(0x007f_ffff) | i32x8::splat(0x3f80_0000)) - 1.0;
+    // Sizes up to 1 have level 0 and no share of the next: masks, and no branch.
     let last = i32x8::splat(last as i32);
     (level.min(last), mantissa & lanes(is_large & level.simd_lt(last)))
 }
@@ -148,10 +149,13 @@ pub fn for_gaussian(surface: &Surface, footprint: &Footprint, ewa: &Ewa) -> (usi
     let is_wide = |area: f32| short > LEAST_SHORT * LEAST_SHORT * 4.0 * area;
     let wide = (short + texel_kernel) * (long + texel_kernel);
     let holds_more = |area: f32| wide > (most * area) * (most * area) * (FRAC_1_PI * FRAC_1_PI);
+    // Coarsen while the ellipse is wider than sampling asks for, or holds too many texels. Areas
+    // are compared as squares, which need no roots.
     while index < last && (is_wide(area) || holds_more(area)) {
         (index, area) = (index + 1, area * 4.0);
     }
     let texels = surface.levels()[index].texels_per_repeat();
+    // Bring the ellipse to the level's texels, and add their kernel.
     let [su, sv] = [texels[0] * inverse_base[0], texels[1] * inverse_base[1]];
     let kernel = kernel(area, texel_kernel);
     let (a, b, c) =
@@ -196,6 +200,7 @@ pub fn for_sweep(surface: &Surface, extent: &SweepExtent, most_across: f32) -> u
     let base = surface.base().texels_per_repeat();
     let fits = |level: &usize| {
         let texels = surface.levels()[*level].texels_per_repeat();
+        // Sides may halve unevenly: the one with more texels counts.
         let scale = (texels[0] / base[0]).max(texels[1] / base[1]);
         extent.across * scale <= most_across && (extent.along + extent.depth) * scale <= MAX_ROWS
     };

@@ -25,6 +25,7 @@ pub(super) fn gaussian<const IS_WIDE: bool>(s: LineLanes) -> LineLanes {
     let s2 = s * s;
     let pair = |constant: f32, linear: f32| s * linear + constant;
     if IS_WIDE {
+        // The longer range takes two terms more for the same error.
         let [a, b, c, d, e, f, g, h] = UP_TO_2_25;
         let (low, high) = (pair(a, b) + pair(c, d) * s2, pair(e, f) + pair(g, h) * s2);
         high * (s2 * s2) + low

@@ -69,16 +69,21 @@ impl LongAxes {
         // Two or three rows of a line's columns are within the budget.
         let most = (ewa.texel_budget as f32).clamp(LEAST_BUDGET, MOST_BUDGET)
             * (COLUMNS_PER_TEXEL * 0.5 / HALF_LENGTH);
+        // Find the variances that are wanted. Base texels add 1/4 to the disc's: 1/6 by
+        // interpolation, 1/12 by their own width. A level's texels bring their 1/12 along.
         let along = ellipses.long * DISC_VARIANCE + 0.25;
         let level = for_lines(&ellipses, most, surface.last_level());
         // Square texels of the level in one of the base level.
+        // It is 4^-level: an exponent, written as such, and exact.
         let per_texel = lanes((i32x8::splat(127) - level - level) << 23_i32);
         let variance = (along * per_texel - 1.0 / 12.0).fast_max(PixelLanes::splat(LEAST_VARIANCE));
         let across = (ellipses.short * DISC_VARIANCE + 0.25) * per_texel - 1.0 / 12.0;
         // The direction of the longer axis: the eigenvector of [[C, -B/2], [-B/2, A]].
         let (is_wide, half_b) = (ellipses.c.simd_gt(ellipses.a), ellipses.b * -0.5);
+        // Either row of the matrix gives it; of the one taken no difference cancels.
         let x = is_wide.select(ellipses.long - ellipses.a, half_b);
         let y = is_wide.select(half_b, ellipses.long - ellipses.c);
+        // Count columns along the side that the axis is nearer to: the slope is 1 at most.
         let is_turned = y.abs().simd_gt(x.abs());
         let (x, y) = (is_turned.select(y, x), is_turned.select(x, y));
         // A circle has no direction, and takes its row.
@@ -86,6 +91,7 @@ impl LongAxes {
         let slope = is_round.select(PixelLanes::ZERO, y / is_round.select(PixelLanes::ONE, x));
         let reach = (variance / (slope * slope + 1.0)).sqrt() * HALF_LENGTH;
         // Rows meet a slanted line aslant.
+        // A triangle of half width w has the variance w^2 / 6, and below 1 it could miss all rows.
         let width = (across * (slope * slope + 1.0) * 6.0).fast_max(PixelLanes::ONE).sqrt();
         let texels = texels_a_repeat(surface, level);
         let bounded = |place: PixelLanes| {
@@ -93,6 +99,7 @@ impl LongAxes {
         };
         let place = [0, 1].map(|i| bounded(pixels.hit[i] * texels[i] - 0.5));
         let place = [is_turned.select(place[1], place[0]), is_turned.select(place[0], place[1])];
+        // With a reach of 1 a column lies on the line, wherever the middle is.
         let reach = reach.fast_max(PixelLanes::ONE);
         let [first, last] = [(place[0] - reach).ceil(), (place[0] + reach).floor()];
         Self {
@@ -121,6 +128,17 @@ impl LongAxes {
         let at = |lanes: &PixelLanes| lanes.as_array()[lane];
         let [y0, slope, start, width] =
             [&self.place[1], &self.slope, &self.start, &self.width].map(at);
+        // Texels count within `width` rows of the line, which climbs or falls by `slope` rows a
+        // column. Here the width is 1, the slope 0.36; * is the texel next to the line:
+        //
+        //     columns   first                  last
+        //     lowest    *  *  #  .  .  .  .  .  .  .
+        //       rows    #  #  *  *  #  #  .  .  .  .
+        //        |      .  .  .  #  *  *  *  #  #  .
+        //        v      .  .  .  .  .  .  #  *  *  *
+        //     highest   .  .  .  .  .  .  .  .  .  #
+        //
+        // A block is sixteen columns, and each of its rows one load a plane.
         let inverse_width = LineLanes::splat(1.0 / width);
         let inverse_reach = LineLanes::splat(at(&self.inverse_reach));
         let [first, num] = self.columns.map(|columns| columns.as_array()[lane]);
@@ -143,6 +161,7 @@ impl LongAxes {
             let starts = rows.row_starts(lowest);
             let mut near = NearRows { rows, column, starts, y, inverse_width, weight };
             // Nearly every block needs three rows: unrolled, they take no mispredicted branch.
+            // Where two would do, the third weighs nothing.
             for _ in 0..3 {
                 near.add_next(&mut sums);
             }
@@ -187,6 +206,7 @@ const _: () = assert!(COLUMNS <= APRON, "a run of columns is one load");
 
 /// Texels a repeat of a level for each lane.
 fn texels_a_repeat(surface: &Surface, levels: i32x8) -> [PixelLanes; 2] {
+    // Where all are on one level, one look-up serves.
     let level = levels.as_array()[0];
     if levels.simd_eq(i32x8::splat(level)).all() {
         return surface.levels()[level as usize].texels_per_repeat().map(PixelLanes::splat);

@@ -48,6 +48,7 @@ impl<const HAS_NORMALS: bool> WideSums<HAS_NORMALS> {
     #[inline(always)]
     pub(super) fn mean(&self) -> Option<Texel> {
         let sums_of = |[x, y, z]: [LineLanes; 3]| {
+            // Add the halves, then the lanes, in one fixed order: every machine rounds alike.
             let of_halves = [self.weight, x, y, z].map(split).map(|[a, b]| a + b);
             let [weight, x, y, z] = sums(of_halves);
             (weight, [x, y, z])

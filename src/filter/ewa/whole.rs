@@ -37,6 +37,7 @@ pub fn mean(
     } else {
         (ellipse, [x, y])
     };
+    // A scan for each case, so that its loop over the texels asks for none.
     let (mean, num_read) = match (with_normal && level.has_normals(), ewa.cut > 1.0) {
         (false, false) => scan::<false, false>(rows, &ellipse, place, 1.0),
         (false, true) => scan::<false, true>(rows, &ellipse, place, ewa.cut),
@@ -72,11 +73,13 @@ fn scan<const HAS_NORMALS: bool, const IS_WIDE: bool>(
     let end = first + num_rows;
     let mut sums = WideSums::<HAS_NORMALS>::default();
     let limit = LineLanes::splat(cut * cut);
+    // Divide by F here, and not at each texel.
     let [a, b, c] = [a, b, c].map(|coefficient| coefficient * inverse_f);
     let columns = join([lane_columns(0); 2]);
     // Scan the rows; what they need is found for sixteen of them at once.
     for first in (first..end).step_by(ROWS) {
         let v = line_indices() + (first as f32 - y0);
+        // A row is as long as the longest, around its own middle, which the shear moves.
         let starts = (LineLanes::splat(x0 - half_width) - v * s).ceil();
         let (from, linear, constant) = (starts - x0, v * b, v * v * c);
         let bound = LineLanes::splat(FARTHEST);
@@ -92,6 +95,7 @@ fn scan<const HAS_NORMALS: bool, const IS_WIDE: bool>(
                 let runs = [0, 1].map(|i| rows[i] + texels.run_start(starts[i] + 8 * block));
                 for j in block..num.min(block + (APRON / 8) as i32) {
                     let u = u + (8 * j) as f32;
+                    // The Gaussian's polynomials hold from 0 to the cut: bring r^2 there first.
                     let r2 = ((u * a + linear) * u + constant).fast_max(LineLanes::ZERO);
                     let weight = gaussian::<IS_WIDE>(r2.fast_min(limit)) & r2.simd_le(limit);
                     sums.add_runs(texels, runs.map(|run| run + 8 * (j - block) as usize), weight);

@@ -60,6 +60,8 @@ impl FarLevel {
 }
 
 fn encode(color: [f32; 3]) -> u32 {
+    // Equal steps of a root are finer where colours are dark, and so are the eye's. Clamped and
+    // rounded, values fit their bits.
     let [r, g, b] = color.map(|c| c.clamp(0.0, 1.0).sqrt());
     (r * 2047.0 + 0.5) as u32
         | ((g * 2047.0 + 0.5) as u32) << 11

@@ -27,6 +27,7 @@ impl FarField {
         let surface = prepared.surface();
         let texels = surface.levels()[self.first_level].texels_per_repeat();
         let across = Ellipses::new(pixels, texels, max_anisotropy).short.sqrt() * 2.0;
+        // Near by even where tables begin earlier: no loss need be looked up.
         if across.simd_le(PixelLanes::splat(HAND_OVER[1])).all() {
             return PixelLanes::ZERO;
         }
@@ -52,6 +53,7 @@ impl FarField {
     ) -> Texel {
         let Footprint { base, displacement, .. } = *footprint;
         let (index, ellipse) = for_tables(surface, self.first_level, footprint, max_anisotropy);
+        // Take the place on the mean depth plane, where the four tables agree.
         let place = [0, 1].map(|i| base[i] + displacement[i] * self.mean_depth);
         let place = surface.levels()[index].in_texels(place).map(|c| c - 0.5);
         let nearest = self.neighbours(surface.base().in_texels(displacement));
@@ -79,6 +81,7 @@ fn average(
         let rows = images.map(|(image, _)| image.row(level, y));
         let (mut x, last) = ((place[0] + left).ceil() as i32, (place[0] + right).floor() as i32);
         while x <= last {
+            // Weigh eight texels: the weights are the same in all four images.
             let r2 = quadric.at(lane_columns(x) - place[0]).fast_max(TexelLanes::ZERO);
             let inside = r2.simd_le(TexelLanes::ONE);
             let weight = exp_negative((r2 + r2).fast_min(TexelLanes::splat(2.0))) & inside;
@@ -92,6 +95,7 @@ fn average(
             x += 8;
         }
     }
+    // Sum the lanes in one fixed order, for the same bytes on every machine.
     let weight = sum(weights).max(f32::MIN_POSITIVE);
     colors.map(|lanes| sum(lanes) / weight)
 }

@@ -74,6 +74,7 @@ impl FarField {
                 seen_image(surface, Seen::Colors, source, size, self.displacement(i, j)),
             )
         };
+        // Collected by direction, whichever thread makes which.
         directions.into_par_iter().map(one).collect()
     }
 
@@ -89,6 +90,7 @@ impl FarField {
             });
             square_difference(&exact, &coarse)
         };
+        // A maximum is the same in any order, so threads may share the probes.
         let greatest = probes.par_iter().map(loss).reduce(|| 0.0, f32::max);
         usize::from(self.first_level > 1 && greatest < MOST_SOURCE_LOSS * MOST_SOURCE_LOSS)
     }
@@ -105,6 +107,7 @@ impl FarField {
     /// The four nearest tables to a displacement in base texels, and their shares.
     pub(super) fn neighbours(&self, displacement: [f32; 2]) -> [(usize, f32); 4] {
         let length = self.lengths.place_of(displacement);
+        // The place is bounded; from the last length the one before is the near one.
         let near = (length as usize).min(NUM_LENGTHS - 2);
         let along = length - near as f32;
         let ([a, b], [c, d]) = (self.pair(near, displacement), self.pair(near + 1, displacement));
@@ -120,6 +123,7 @@ impl FarField {
     fn pair(&self, length: usize, [du, dv]: [f32; 2]) -> [(usize, f32); 2] {
         let num = self.num_azimuths(length);
         let azimuth = diamond_angle(du, dv) * (num as f32 * 0.25);
+        // Azimuths go around: after the last comes the first.
         let (left, part) = (azimuth as usize % num, azimuth - azimuth.floor());
         [(self.starts[length] + left, 1.0 - part), (self.starts[length] + (left + 1) % num, part)]
     }
@@ -135,6 +139,7 @@ fn table_starts(surface: &Surface, first_level: usize, mib: u32) -> Vec<usize> {
     let growth = pseudo_log(SLOPES[1] / SLOPES[0]);
     let azimuths = |scale: f32| {
         let ratio = |length: usize| pseudo_exp(growth * (length as f32 / (NUM_LENGTHS - 1) as f32));
+        // By fours, so that tables lie along both axes.
         let wanted = |length: usize| (ratio(length) * scale) as usize / 4 * 4;
         (0..NUM_LENGTHS)
             .map(|length| wanted(length).clamp(AZIMUTHS[0], AZIMUTHS[1]))

@@ -59,6 +59,7 @@ impl Grid<'_> {
             let PixelOnLines { xi, q, half_width, half_height, .. } = *kernel;
             let [from, to] =
                 [xi - half_width, xi + half_width].map(|xi| (xi - self.first) * inverse);
+            // Bounded by 0 before the casts, ellipses beside the grid ask for none of its groups.
             let last = to.min((self.num_lines - 1) as f32 * (1.0 / GROUP as f32));
             for range in
                 ranges.iter_mut().take((last + 1.0).max(0.0) as usize).skip(from.max(0.0) as usize)

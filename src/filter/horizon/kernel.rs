@@ -34,11 +34,13 @@ impl Totals {
         kernel: &PixelOnLines,
         lights: Option<&LocalLights>,
     ) {
+        // Find the lines that cross the ellipse. One that only touches it weighs nothing.
         let inverse = 1.0 / grid.spacing;
         let from = (kernel.xi - kernel.half_width - grid.first) * inverse;
         let to = (kernel.xi + kernel.half_width - grid.first) * inverse;
         let lines = (from.floor() as i32 + 1).max(0) as usize
             ..(to.ceil() as i32).clamp(0, grid.num_lines as i32) as usize;
+        // Find the bins under the ellipse. Bounded below by 0, places are safe to cast.
         let bin_at = |place: f32| (place - grid.begin) / grid.step;
         let from = bin_at(kernel.q - kernel.half_height).max(0.0) as usize;
         let to =
@@ -62,11 +64,15 @@ impl Totals {
         let xi = (lane_indices() + line as f32) * grid.spacing + (grid.first - kernel.xi);
         // Lines of the next grid count there.
         let is_here = lane_indices().simd_lt(TexelLanes::splat((grid.num_lines - line) as f32));
+        // Take r^2 apart, across the lines and along them. Lanes that do not count are 1 across,
+        // where no length along is left.
         let outside =
             is_here.select((xi * xi * kernel.across).fast_min(TexelLanes::ONE), TexelLanes::ONE);
         let middle = TexelLanes::splat(kernel.q) - xi * kernel.skew;
         let half = (TexelLanes::ONE - outside).sqrt() * (1.0 / kernel.along);
         let [low, high] = [middle - half, middle + half];
+        // Weigh the bins by the pixel's kernel: each by the difference of one integral at its ends,
+        // so that the weights of a line sum to its whole, however bins cut it.
         let start_weight = integral((low - middle) * kernel.along);
         let mut last_weight = start_weight;
         let mut sums = [TexelLanes::ZERO; CHANNELS];
@@ -77,6 +83,7 @@ impl Totals {
             );
             let visible = weight - last_weight;
             if let (Some(lights), true) = (lights, CHANNELS > 3) {
+                // Light what is seen before it is averaged: the mean is of products.
                 let normal = [3, 4, 5].map(|i| load(&bin[i.min(CHANNELS - 1)], line));
                 let light = diffuse(lights, &normal);
                 (0..3).for_each(|i| sums[i] += load(&bin[i], line) * light[i] * visible);
@@ -86,6 +93,7 @@ impl Totals {
             }
             last_weight = weight;
         }
+        // What r^2 is across is the same all along a line: its factor comes once.
         let share = exp_negative(outside + outside);
         self.weight += (last_weight - start_weight) * share;
         (0..3).for_each(|i| self.color[i] += sums[i] * share);
@@ -95,6 +103,7 @@ impl Totals {
     /// The mean; `None` where no more was added than the rounding of [`integral`]'s differences
     /// makes.
     pub(super) fn mean(&self, is_lit: bool) -> Option<Texel> {
+        // Sum the lanes in one fixed order, for the same bytes on every machine.
         let sums_of = |[x, y, z]: [TexelLanes; 3]| {
             let [weight, x, y, z] = sums([self.weight, x, y, z]);
             (weight, [x, y, z])

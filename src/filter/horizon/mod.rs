@@ -81,6 +81,7 @@ pub(super) fn colors(
         // Sweep what is near.
         found.clear();
         found.resize(near.len(), Texel::default());
+        // Lit frames have no tables: all covered pixels are near, and the next lights are theirs.
         let (of_these, others) = lights.split_at(if lights.is_empty() { 0 } else { near.len() });
         let patches = Patches {
             is_alone: batch.is_alone,

@@ -107,6 +107,7 @@ impl<'a> Patches<'a> {
         if let Some(plan) = self.plan_together(picks, scratch) {
             return self.sweep(&plan, (picks, lights), scratch, found);
         }
+        // Halve what does not fit: at the end stand single pixels, which always do.
         let middle = picks.len() / 2;
         let (near_lights, far_lights) = lights.split_at(if lights.is_empty() { 0 } else { middle });
         let (near, far) = found.split_at_mut(middle);
@@ -145,15 +146,18 @@ impl<'a> Patches<'a> {
         // Lay the lines.
         let texels = self.surface.levels()[level].texels_per_repeat();
         let blur = blur(level);
+        // A coarse level's texels blur by themselves, so the ellipses are made narrower by as much.
         ellipses.clear();
         ellipses.extend(
             pixels
                 .iter()
                 .map(|p| Ellipses::new(p, texels, self.horizon.max_anisotropy).sharpened(blur)),
         );
+        // Flat relief may be walked either way: along the longer side, so that fewer lines serve.
         let [a, c] =
             [ellipses[0].a, ellipses[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
         let frame = SweepFrame::new(self.surface, level, middle, a < c);
+        // A lone pixel's displacement is the frame's own: there is no growth to fit.
         let frame = if picks.len() > 1 { frame.fit(pixels, ellipses, picked)? } else { frame };
         // Put the pixels on them.
         on_lines.clear();
@@ -174,6 +178,7 @@ impl<'a> Patches<'a> {
         if picks.len() > 1 && (is_wasteful || extent.q[1] - extent.q[0] > step * MOST_BINS) {
             return None;
         }
+        // Set the lines so close that sixteen lie within two loads where they are farthest apart.
         let most_scale = frame.greatest_scale([extent.q[0] - 1.0, extent.q[0] + num_rows + 1.0])?;
         let num_lines = (LINES[0] * self.horizon.lines as f32).max(LINES[1]);
         let spacing = (WIDEST / most_scale).min(extent.half_width * (2.0 / num_lines));
@@ -197,6 +202,7 @@ impl<'a> Patches<'a> {
             plan.run(unlit, pixels, &[], totals)
         };
         for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
+            // Where no line meets the ellipse, the texels around the base place stand for it.
             let mean = totals.mean(self.is_lit).unwrap_or_else(|| {
                 let pixel = self.pixels[usize::from(pick / 8)].lane(usize::from(pick % 8));
                 points::bilinear(&self.surface.levels()[plan.level], pixel.base)
@@ -219,6 +225,8 @@ impl<'a> Patches<'a> {
         let base = self.surface.base();
         let means = means(pixels, picked, num);
         let [du, dv] = base.in_texels(means[1]);
+        // Find the narrowest, the widest and the longest ellipse; lanes that are not picked take no
+        // part, whatever they hold.
         let (mut least, mut most, mut long) = (f32::MAX, 0.0_f32, 0.0_f32);
         for (pixels, picked) in pixels.iter().zip(picked) {
             let ellipses =
@@ -238,6 +246,7 @@ impl<'a> Patches<'a> {
         if most > MOST_RATIO * least {
             return None;
         }
+        // The axes are squares: a fourth root of their product is the geometric mean.
         let across = 2.0 * (most * least).sqrt().sqrt();
         let extent =
             SweepExtent { across, along: 2.0 * long.sqrt(), depth: du.abs().max(dv.abs()) };
@@ -286,6 +295,7 @@ impl Extent {
             extent.q = [extent.q[0].min(q - half_height), extent.q[1].max(q + half_height)];
             extent.half_width = extent.half_width.max(half_width);
             extent.half_height = extent.half_height.min(half_height);
+            // By itself the pixel would be walked over its ellipse and down to the deepest relief.
             extent.area += 2.0 * half_width * (2.0 * half_height + depth);
         }
         extent
@@ -303,10 +313,12 @@ impl Plan<'_> {
     ) -> u64 {
         let Extent { xi, q, .. } = self.extent;
         let spacing = self.spacing;
+        // Centre an even number of lines on the patch.
         let num_lines = 2 * ((xi[1] - xi[0]) * (0.5 / spacing)).ceil() as usize;
         let first = (xi[0] + xi[1]) * 0.5 - spacing * (num_lines as f32 * 0.5 - 0.5);
         let num_bins = ((q[1] - q[0]) / self.step).ceil().max(1.0) as usize;
         let mut num_rows = 0;
+        // Sweep a grid at a time, and weigh it before the next: its bins are still in the cache.
         for line in (0..num_lines).step_by(MOST_LINES) {
             let grid = Grid {
                 frame: &self.frame,
@@ -323,6 +335,7 @@ impl Plan<'_> {
                     num_rows += profile.sweep(&grid, group, range);
                 }
             }
+            // A pixel's lines may lie on several grids: the totals go on, in this order everywhere.
             for (i, (pixel, totals)) in pixels.iter().zip(totals.iter_mut()).enumerate() {
                 totals.add(profile, &grid, pixel, lights.get(i));
             }

@@ -22,6 +22,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         if self.bins.len() < grid.num_bins {
             self.bins.resize(grid.num_bins, [EMPTY_ROW; CHANNELS]);
         }
+        // Widen the range to whole bins, at least one: a bin holds the mean of all that it shows.
         let bin_at = |place: f32| (place - grid.begin) / grid.step;
         let first_bin = bin_at(entry).max(0.0) as usize;
         let end_bin = (bin_at(exit).ceil() as usize).clamp(first_bin + 1, grid.num_bins);
@@ -47,6 +48,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
             }
             last = read[num_read - 1];
             row += num_read as i32;
+            // Toward the exit any row may be the last: smaller blocks waste less.
             num_read = READ_AHEAD / 4;
         }
         walk.finish(&last, &mut self.bins);
@@ -145,15 +147,18 @@ impl<'a> Lines<'a> {
         let x = self.columns(row);
         let place = x - LineLanes::splat(x.as_array()[0]).floor();
         let (words, stride) = (rows.words(), rows.stride());
+        // Count each line's texel from the first line's, the start of the run.
         let cell = place.fast_trunc_int();
         let part = place - LineLanes::from_i32x16(cell);
         let pick = |plane: usize| pick_words(words, start + plane * stride, cell);
+        // Interpolate between the texels on both sides of each line.
         let blend = LineBlend::new(part);
         let (red_green, blue_height) = (blend.mix(pick(0)), blend.mix(pick(1)));
         let color = [low_halves(red_green), high_halves(red_green), low_halves(blue_height)];
         let mut values = [LineLanes::ZERO; CHANNELS];
         values[..3].copy_from_slice(&color);
         if CHANNELS > 3 && rows.has_normals() {
+            // Normals are packed in another way than `blend` mixes: unpack both sides first.
             let [near, far] = pick(2).map(|words| {
                 let [a, b] = halves(words).map(unpack_normals);
                 [0, 1, 2].map(|i| join([a[i], b[i]]))
@@ -162,6 +167,7 @@ impl<'a> Lines<'a> {
         } else if CHANNELS > 3 {
             values[CHANNELS - 1] = LineLanes::ONE;
         }
+        // Find where each texel is seen: p = (q - d D) / (1 + d c), in bins.
         let down = LineLanes::ONE - high_halves(blue_height) * (1.0 / FULL_F32);
         let place = (LineLanes::splat(q * self.scale) - down * self.depth_bins)
             / (down * growth + 1.0)

@@ -104,6 +104,7 @@ impl<'a> SweepFrame<'a> {
         let texels = level.texels_per_repeat();
         let [du, dv] = [displacement[0] * texels[0], displacement[1] * texels[1]];
         let is_flat = du.abs().max(dv.abs()) < FLAT;
+        // Walk along the longer axis of the displacement: lines then lean a texel a row at most.
         let is_turned = if is_flat { is_long_along_u } else { du.abs() > dv.abs() };
         let turn = |[u, v]: [f32; 2]| if is_turned { [v, u] } else { [u, v] };
         let (middle, texels, [dx, dy]) = (turn(middle), turn(texels), turn([du, dv]));
@@ -168,9 +169,12 @@ impl<'a> SweepFrame<'a> {
             self.tilt = (x_along * qq - q_along * qx) / determinant;
             self.spread = x_across / (xx * self.depth);
         } else {
+            // Pixels in one line do not tell the two directions apart: take one growth along and
+            // across, and no tilt.
             self.growth = (q_along + x_along) / (qq + xx).max(f32::MIN_POSITIVE);
             self.spread = self.growth / self.depth;
         }
+        // Measure what the fit leaves over in radii of each pixel's own ellipse.
         let mut misfit = PixelLanes::ZERO;
         for ((pixels, ellipse), &picked) in pixels.iter().zip(ellipses).zip(picked) {
             let [rx, ry] = self.residuals(pixels);
@@ -212,9 +216,11 @@ impl<'a> SweepFrame<'a> {
         let [[x, q], _] = self.place(pixels);
         let [rx, ry] = self.residuals(pixels);
         let (x, q) = (x + rx * self.mean_depth, q + ry * self.mean_depth);
+        // Find the line through the pixel, and how it leans there.
         let scale = q * self.spread + 1.0;
         let xi = (x - q * self.shear) / scale;
         let shear = xi * self.spread + self.shear;
+        // Write the ellipse in the lines' coordinates.
         let ([a, c], b) = (self.turn([ellipses.a, ellipses.c]), ellipses.b * self.toward);
         // F = A C - B^2 / 4, which the shear keeps: so A' - B'^2 / 4C' is 1 / C F, without a
         // difference that cancels.

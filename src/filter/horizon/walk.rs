@@ -100,15 +100,19 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
         let inverse =
             LineLanes::ONE / (next.place - last.place).fast_max(LineLanes::splat(LEAST_SEGMENT));
         let segment = Segment { last, next, inverse };
+        // Move the record on, never back, and not beyond the last bin.
         let record = self.record.fast_max(next.place).fast_min(self.end);
+        // Add what is seen within the lines' own bins.
         let bin_end = self.bin + LineLanes::ONE;
         let is_full = record.simd_ge(bin_end);
         let seen = segment.between(self.record, record.fast_min(bin_end));
         (0..CHANNELS).for_each(|i| self.sums[i] += seen[i]);
+        // One test of all lines spares the writing where none has filled its bin.
         let full = is_full.to_bitmask();
         if full != 0 {
             let bin = record.floor();
             self.write(full, bin, &segment, bins);
+            // Begin the sums of the bins that the records lie in now.
             let rest = segment.between(bin, record);
             (0..CHANNELS).for_each(|i| self.sums[i] = is_full.select(rest[i], self.sums[i]));
             self.bin = bin;
@@ -128,8 +132,11 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
         let [from, to] = [self.bin, end].map(|bin| bin.fast_trunc_int().to_array());
         let mut left = full;
         while left != 0 {
+            // The mask tells the compiler what is so anyway: no lane is out of bounds.
             let lane = left.trailing_zeros() as usize & (GROUP - 1);
             let bins = &mut bins[from[lane] as usize..to[lane] as usize];
+            // A bin is 1 long, so its sum of colour times length is its mean. The bins after it
+            // lie wholly in the segment, which is linear: the colour at their middle is theirs.
             if let Some((first, others)) = bins.split_first_mut() {
                 (0..CHANNELS)
                     .for_each(|i| first[i][self.at + lane] = self.sums[i].as_array()[lane]);

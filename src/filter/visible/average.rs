@@ -23,6 +23,8 @@ pub fn average(
         for (i, &bits) in set.bits[first..first + num].iter().enumerate() {
             if bits != 0 {
                 let x = row.x + 8 * i as i32;
+                // Texels outside share a batch with those inside: bring their r^2 to where the
+                // exponential holds, and mask their weights.
                 let r2 = quadric
                     .at(lane_columns(x) - x0)
                     .fast_max(TexelLanes::ZERO)

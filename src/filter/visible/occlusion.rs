@@ -37,6 +37,7 @@ impl<'a> Occlusion<'a> {
     pub fn new(level: &'a Level, displacement: [f32; 2]) -> Self {
         let [dx, dy] = displacement;
         let runs_along_x = dx.abs() > dy.abs();
+        // Never 0: a ray straight up is then above all relief after one step.
         let length = dx.abs().max(dy.abs()).max(1e-3);
         Self {
             rows: level.rows(false),
@@ -56,6 +57,7 @@ impl<'a> Occlusion<'a> {
             height += self.rise;
             let relief = self.heights_across(x, y, i as f32);
             hidden |= relief.simd_gt(height + TOLERANCE).to_bitmask() as u8;
+            // Stop when each texel is hidden or its ray is above all relief.
             let open = bits & !hidden;
             if open == 0
                 || (height.simd_lt(TexelLanes::splat(FULL_F32)).to_bitmask() as u8 & open) == 0
@@ -79,6 +81,8 @@ impl<'a> Occlusion<'a> {
                 let [x, y] = [x, y].map(|c| c as f32);
                 let cell =
                     [x + (i as f32 * self.step[0]).floor(), y + (i as f32 * self.step[1]).floor()];
+                // Of the two texels across the ray the second is the next: by rows where the ray
+                // runs along x, else by columns.
                 let across = usize::from(self.runs_along_x);
                 let mut texel = cell.map(|c| c as i32);
                 texel[across] += i32::from(far > near);
@@ -155,6 +159,7 @@ fn keep_ends(row: &TexelRow, batches: &mut [u8], occlusion: &Occlusion) -> u64 {
     // The batch of the first hidden texel ends this scan; what it hides is known.
     let mut last = (low + 1..batches.len()).rev().map(|i| (i, hidden_of(i, batches[i])));
     let (high, high_hidden) = last.find(|(_, hidden)| *hidden != 0).unwrap_or((low, low_hidden));
+    // Keep what the scans passed: bits below the first hidden one, and above the last.
     let before = (1_u32 << low_hidden.trailing_zeros()) - 1;
     let after = !(0xff_u32 >> high_hidden.leading_zeros());
     for (i, bits) in batches.iter_mut().enumerate().take(high + 1).skip(low) {

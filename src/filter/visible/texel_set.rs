@@ -36,6 +36,7 @@ impl TexelSet {
         // Texel centres lie at halves.
         let [x0, y0] = center.map(|c| c - 0.5);
         let half_height = ellipse.half_height();
+        // Put so that a NaN, too, leaves the set empty.
         if !(half_height < 1e6 && ellipse.f > 0.0) {
             return;
         }
