@@ -102,10 +102,10 @@ fn means(criterion: &mut Criterion) {
         let name = |filter: &str| format!("{filter}/{}", view.name);
         let base = street.base();
         group.bench_function(name("nearest"), |b| {
-            everywhere(b, view, |p| points::nearest(base, p.hit))
+            everywhere(b, view, |p| points::nearest(base, p.hit));
         });
         group.bench_function(name("bilinear"), |b| {
-            everywhere(b, view, |p| points::bilinear(base, p.hit))
+            everywhere(b, view, |p| points::bilinear(base, p.hit));
         });
         group.bench_function(name("trilinear"), |b| {
             everywhere(b, view, |p| {

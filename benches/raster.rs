@@ -37,7 +37,7 @@ fn binning(criterion: &mut Criterion) {
         let geometry = project(&scene, &settings);
         let mut bins = Bins::default();
         group.bench_function(name, |b| {
-            b.iter(|| bins.fill(black_box(&geometry), &TileGrid::new(&settings)))
+            b.iter(|| bins.fill(black_box(&geometry), &TileGrid::new(&settings)));
         });
     }
     group.finish();

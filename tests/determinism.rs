@@ -69,6 +69,19 @@ fn with_small_options(filter: Filter) -> (&'static str, Filter) {
 /// A name, what lies beyond the textures' edges, texels a side of the floor's, and settings.
 type Case = (String, Wrap, u32, Settings);
 
+/// What the paper's method can be told.
+fn visible_cases(visible: Visible) -> [(&'static str, Visible); 6] {
+    let (flat, printed) = (Derivatives::Flat, Formulas::Printed);
+    [
+        ("two-ended", Visible { visibility: Visibility::TwoEnded, ..visible }),
+        ("resolved", Visible { visibility: Visibility::Resolved, ..visible }),
+        ("flat derivatives", Visible { derivatives: flat, ..visible }),
+        ("printed", Visible { formulas: printed, ..visible }),
+        ("printed, flat derivatives", Visible { derivatives: flat, formulas: printed, ..visible }),
+        ("base level", Visible { texel_budget: 0, ..visible }),
+    ]
+}
+
 /// Every filter and every option, one frame each.
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
@@ -107,18 +120,9 @@ fn cases() -> Vec<Case> {
         let settings = Settings { lighting, ..small(filter) };
         add(&format!("Ewa {lighting:?}, every texel, cut {cut}"), Wrap::Repeat, settings);
     }
-    let mut add_visible =
-        |name: &str, visible| add(name, Wrap::Repeat, small(Filter::Visible(visible)));
-    let (flat, printed) = (Derivatives::Flat, Formulas::Printed);
-    add_visible("two-ended", Visible { visibility: Visibility::TwoEnded, ..visible });
-    add_visible("resolved", Visible { visibility: Visibility::Resolved, ..visible });
-    add_visible("flat derivatives", Visible { derivatives: flat, ..visible });
-    add_visible("printed", Visible { formulas: printed, ..visible });
-    add_visible(
-        "printed, flat derivatives",
-        Visible { derivatives: flat, formulas: printed, ..visible },
-    );
-    add_visible("base level", Visible { texel_budget: 0, ..visible });
+    for (name, visible) in visible_cases(visible) {
+        add(name, Wrap::Repeat, small(Filter::Visible(visible)));
+    }
     let culled = Settings { cull_back_faces: true, msaa: 8, ..small(Filter::Visible(visible)) };
     add("culled, msaa 8", Wrap::Repeat, culled);
     add("4 lines", Wrap::Repeat, small(Filter::Horizon(Horizon { lines: 4, ..horizon })));

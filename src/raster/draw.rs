@@ -72,7 +72,7 @@ pub fn draw(
     frame: &mut Frame,
 ) -> RasterStats {
     let shade = |block: &QuadBlock, colors: &mut Vec<_>| {
-        colors.extend(block.pairs().map(|pair| shade(&pair)))
+        colors.extend(block.pairs().map(|pair| shade(&pair)));
     };
     Rasterizer::default().draw(geometry, (scene, settings), &shade, &|| 0.0, frame)
 }

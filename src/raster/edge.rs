@@ -6,10 +6,11 @@
 //! left one (`a > 0`) or a top one (`a = 0, b > 0`); other edges take 1 off `c`, so that inside is
 //! `E >= 0` (the top-left fill rule).
 //!
-//! At samples, `x = 256 column + offset`: `E = 256 (a column + b row) + e`, and `floor(E / 256) = a
-//! column + b row + floor(e / 256)` has the same sign. That quotient fits 32 bits wherever an edge
-//! crosses a block of 8x8 pixels: `|a|, |b| < 2^26`, and within the block it varies by at most `14
-//! * 2^26`. Blocks that an edge does not cross are decided by their corners in 64 bits.
+//! At samples, `x = 256 column + offset`, so that `E = 256 (a column + b row) + e`, and
+//! `floor(E / 256) = a column + b row + floor(e / 256)` has the same sign. That quotient fits 32
+//! bits wherever an edge crosses a block of 8x8 pixels: `|a|, |b| < 2^26`, and within the block it
+//! varies by at most `14 * 2^26`. Blocks that an edge does not cross are decided by their corners in
+//! 64 bits.
 
 use crate::simd::i32x8;
 

@@ -1,9 +1,9 @@
 //! The floating horizon, line by line.
 //!
 //! A line at `xi` across runs along the displacement `D`; texel rows cross it at whole places. Row
-//! i lies at `eta_i` along the line, from the middle of the ellipse, and is seen over `p_i = eta_i
-//! - d_i |D|`. The line's part of the kernel is `exp(-2 r^2)`, `r^2 = r0^2 + C' (eta - eta0)^2`,
-//! and the eye sees what makes a new record of `p`.
+//! i lies at `eta_i` along the line, from the middle of the ellipse, and is seen over
+//! `p_i = eta_i - d_i |D|`. The line's part of the kernel is `exp(-2 r^2)`,
+//! `r^2 = r0^2 + C' (eta - eta0)^2`, and the eye sees what makes a new record of `p`.
 
 use super::formulas::Conic;
 use super::stored::{color, exp_negative, height, integral};

@@ -115,7 +115,7 @@ impl MtlFiles {
         for name in names.split_whitespace() {
             match resolve(name)? {
                 Some(path) => {
-                    found.extend(self.files.insert(path).then(|| self.obj.with_file_name(name)))
+                    found.extend(self.files.insert(path).then(|| self.obj.with_file_name(name)));
                 }
                 None if self.files.insert(name.into()) => {
                     let path = self.obj.with_file_name(name);

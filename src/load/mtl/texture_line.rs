@@ -80,10 +80,11 @@ impl TextureLine {
             "-o" => self.offset = [number(0)?, second(0.0)?],
             "-mm" => self.range = [number(0)?, number(1)?],
             "-clamp" => {
-                self.is_clamped = values.first().is_some_and(|word| word.eq_ignore_ascii_case("on"))
+                self.is_clamped =
+                    values.first().is_some_and(|word| word.eq_ignore_ascii_case("on"));
             }
             "-imfchan" => {
-                self.channel = Some(channel(values.first().copied().unwrap_or_default())?)
+                self.channel = Some(channel(values.first().copied().unwrap_or_default())?);
             }
             _ => self.unsupported.push(option.clone()),
         }
