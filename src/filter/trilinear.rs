@@ -11,10 +11,7 @@ use crate::footprint::levels::{longest_sides, of_sizes};
 use crate::simd::{
     LineLanes, PixelLanes, high_halves, i32x8, join, lanes, low_halves, split, u32x16,
 };
-use crate::texture::{Rows, Surface};
-
-/// Texel coordinates are clamped to so far from the pattern's first, so that neighbours fit an i32.
-const FARTHEST: f32 = (1 << 30) as f32;
+use crate::texture::{FARTHEST, Rows, Surface};
 
 /// Eight places in a level's texels.
 #[derive(Clone, Copy)]

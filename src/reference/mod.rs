@@ -1,5 +1,5 @@
-//! The scalar twin that the kernels are held against: the definitions of FILTER, one texel and one
-//! ray at a time, in f64.
+//! The scalar twin that the kernels are held against: the definitions of `docs/theory.md`, one
+//! texel and one ray at a time, in f64.
 //!
 //! * `derivatives` and `Conic`: formulas (1), (2) and (3), as meant and as printed.
 //! * `texels`, `ray_margin`, `mean`: the texels T of an ellipse, which of them a ray to the eye

@@ -18,7 +18,7 @@ pub use image::{ColorImage, HeightImage, NormalImage};
 pub use level::{FULL, Level, Texel};
 pub(crate) use level::{FULL_F32, unpack_normals};
 pub(crate) use pyramid::box_taps;
-pub(crate) use rows::{APRON, RowStarts, Rows};
+pub(crate) use rows::{APRON, FARTHEST, RowStarts, Rows};
 pub use surface::{Surface, SurfaceMaps};
 pub use wrap::Wrap;
 pub(crate) use wrap::wrap_index;

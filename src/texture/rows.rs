@@ -16,6 +16,10 @@ use crate::simd::{u32x8, u32x16};
 use rayon::prelude::*;
 use std::sync::Arc;
 
+/// Look-ups clamp texel coordinates to so far from the pattern's first, so that neighbours fit an
+/// i32.
+pub(crate) const FARTHEST: f32 = (1 << 30) as f32;
+
 /// One texel as it is packed.
 pub(crate) type PackedTexel = [u32; 3];
 

@@ -9,10 +9,7 @@ use crate::settings::Ewa;
 use crate::simd::{
     LineLanes, from_words, join, join_words, lane_columns, line_indices, pick, u32x8, u32x16, words,
 };
-use crate::texture::{APRON, Rows, Surface, Texel};
-
-/// Texel coordinates are clamped to so far from the pattern's first, so that neighbours fit an i32.
-const FARTHEST: f32 = (1 << 30) as f32;
+use crate::texture::{APRON, FARTHEST, Rows, Surface, Texel};
 
 /// Rows whose places are found at once.
 const ROWS: usize = 16;
