@@ -15,7 +15,6 @@ pub(crate) use samples::{Channel, Samples};
 use crate::error::{Error, Result};
 use gray_exr::GrayExr;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
-use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Seek};
 use std::path::Path;
 
@@ -45,6 +44,13 @@ impl ImageInfo {
     }
 }
 
+/// Bytes of a file, wherever they lie: one type for all, so that every decoder is compiled once.
+type Bytes<'a> = Box<dyn Source + 'a>;
+
+trait Source: BufRead + Seek {}
+
+impl<R: BufRead + Seek> Source for R {}
+
 /// Reads only the head of an image file.
 pub(crate) fn probe(path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
     contained(path, || {
@@ -65,7 +71,7 @@ pub(crate) fn image(path: &Path, limits: ImageLimits) -> Result<DynamicImage> {
 
 /// Decodes an image file in memory; `path` serves for messages and for formats without a signature.
 pub(crate) fn image_bytes(bytes: &[u8], path: &Path, limits: ImageLimits) -> Result<DynamicImage> {
-    contained(path, || decode(Cursor::new(bytes), path, limits))
+    contained(path, || decode(Box::new(Cursor::new(bytes)), path, limits))
 }
 
 /// Decodes an image file to its samples.
@@ -88,7 +94,7 @@ fn contained<T>(path: &Path, work: impl FnOnce() -> Result<T>) -> Result<T> {
         .unwrap_or_else(|| Err(Error::file(path, "the image is damaged (its decoder gave up)")))
 }
 
-fn open(path: &Path, limits: ImageLimits) -> Result<BufReader<File>> {
+fn open(path: &Path, limits: ImageLimits) -> Result<Bytes<'static>> {
     let file = open_regular(path)?;
     // Some decoders read the whole file into memory first.
     if file.metadata().is_ok_and(|data| data.len() > limits.bytes) {
@@ -97,16 +103,16 @@ fn open(path: &Path, limits: ImageLimits) -> Result<BufReader<File>> {
             format!("larger than the limit of {} MiB", limits.bytes >> 20),
         ));
     }
-    Ok(BufReader::new(file))
+    Ok(Box::new(BufReader::new(file)))
 }
 
-fn decode(reader: impl BufRead + Seek, path: &Path, limits: ImageLimits) -> Result<DynamicImage> {
+fn decode(reader: Bytes, path: &Path, limits: ImageLimits) -> Result<DynamicImage> {
     DynamicImage::from_decoder(decoder(reader, path, limits)?).map_err(|e| Error::caused(path, e))
 }
 
 /// The decoder of an image whose head is within the limits.
-fn decoder<'a, R: BufRead + Seek + 'a>(
-    reader: R,
+fn decoder<'a>(
+    reader: Bytes<'a>,
     path: &Path,
     limits: ImageLimits,
 ) -> Result<Box<dyn ImageDecoder + 'a>> {
@@ -137,8 +143,8 @@ fn decoder<'a, R: BufRead + Seek + 'a>(
     Ok(decoder)
 }
 
-fn decoder_of_format<'a, R: BufRead + Seek + 'a>(
-    reader: R,
+fn decoder_of_format<'a>(
+    reader: Bytes<'a>,
     path: &Path,
     limits: Limits,
 ) -> Result<Box<dyn ImageDecoder + 'a>> {

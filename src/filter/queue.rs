@@ -44,14 +44,15 @@ impl Queue {
 
     /// Lines up the covered pixels of a pair.
     #[inline(always)]
-    pub(super) fn push(&mut self, covered: u8, index: usize, group: &Group) {
+    pub(super) fn push(&mut self, covered: u8, index: usize, [u, v, size]: Group) {
         if self.num.is_multiple_of(8) && covered == u8::MAX {
             // A whole pair at a group's beginning stays as it is: no lane is moved.
             let numbers = std::array::from_fn(|lane| (8 * index + lane) as u32);
-            (self.groups[self.num / 8], self.pixels[self.num / 8]) = (*group, numbers);
+            (self.groups[self.num / 8], self.pixels[self.num / 8]) = ([u, v, size], numbers);
             self.num += 8;
         } else {
-            self.push_covered(covered, index, group);
+            // A copy for the call: what is passed by its address is kept in memory.
+            self.push_covered(covered, index, &[u, v, size]);
         }
     }
 
@@ -88,14 +89,19 @@ impl Queue {
 
     /// Hands out the colours of one of [`Self::groups`] to the pairs.
     #[inline(always)]
-    pub(super) fn hand_out(&self, group: usize, found: [PixelLanes; 3], out: &mut [Filtered]) {
+    pub(super) fn hand_out(
+        &self,
+        group: usize,
+        [red, green, blue]: [PixelLanes; 3],
+        out: &mut [Filtered],
+    ) {
         let pixels = &self.pixels[group];
         if pixels[0].is_multiple_of(8) && pixels[7] == pixels[0] + 7 {
             // All eight are one pair's: no lane is moved.
-            out[pixels[0] as usize / 8].color = found;
+            out[pixels[0] as usize / 8].color = [red, green, blue];
         } else {
             let num = (self.num - 8 * group).min(8);
-            scatter(&pixels[..num], &found, out);
+            scatter(&pixels[..num], &[red, green, blue], out);
         }
     }
 

@@ -45,7 +45,7 @@ pub(super) fn colors(surface: &Surface, batch: &Batch, out: &mut [Filtered]) {
         // Line up covered pixels until as many wait as are looked up at once.
         while let Some((index, pixels)) = if queue.is_full() { None } else { pixels.next() } {
             let [u, v] = pixels.hit;
-            queue.push(pixels.covered, index, &[u, v, longest_sides(surface.base(), pixels)]);
+            queue.push(pixels.covered, index, [u, v, longest_sides(surface.base(), pixels)]);
         }
         if queue.is_empty() {
             return;
@@ -67,22 +67,28 @@ pub fn look_up(
 ) {
     let Some(first) = groups.first() else { return };
     // The next group's places are found before this one's texels are read: neither waits for the
-    // other.
+    // other. Both stay where they are made: a copy would wait for what was just written.
     let mut levels = TwoLevels::new(surface, 0);
-    let mut next = Spots::new(surface, &mut levels, first);
+    let mut in_turn = [(); 2].map(|()| (Spots::new(surface, &mut levels, first), levels));
     for (index, group) in groups.iter().enumerate() {
-        let (spots, of_spots) = (next, levels);
-        next = Spots::new(surface, &mut levels, groups.get(index + 1).unwrap_or(group));
+        let [even, odd] = &mut in_turn;
+        let (this, next) = if index % 2 == 0 { (even, odd) } else { (odd, even) };
+        let ahead = groups.get(index + 1).unwrap_or(group);
+        *next = (Spots::new(surface, &mut levels, ahead), levels);
+        let (spots, of_spots) = this;
         let is_blended = spots.blend.simd_gt(PixelLanes::ZERO).any();
         let [fine, coarse] = [0, 1].map(|i| (of_spots.rows[i], &spots.spots[i]));
         let color = |(rows, spot): (&Rows, &Spot)| spot.color(rows);
         // Read the coarser level only where a pixel has a share of it.
-        let color = match (spots.is_same, is_blended) {
-            (false, _) => on_several_levels(surface, group),
+        let [red, green, blue] = match (spots.is_same, is_blended) {
+            (false, _) => {
+                let [red, green, blue] = on_several_levels(surface, group);
+                [red, green, blue]
+            }
             (true, true) => mixed(&color(fine), &color(coarse), spots.blend),
             (true, false) => color(fine),
         };
-        sink(index, color);
+        sink(index, [red, green, blue]);
     }
 }
 

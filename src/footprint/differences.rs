@@ -36,7 +36,8 @@ type Pair = [[PixelLanes; 2]; 2];
 pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &FootprintRule) -> Pair {
     if rule.formulas == Formulas::Printed {
         // The printed formulas are there to be looked at, not to be fast: they go lane by lane.
-        return letter_by_letter(uv, offset, rule);
+        let [[a, b], [c, d]] = letter_by_letter(uv, offset, rule);
+        return [[a, b], [c, d]];
     }
     let flat = || in_quads(*uv);
     if rule.derivatives == Derivatives::Flat {

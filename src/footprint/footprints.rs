@@ -72,6 +72,12 @@ impl Footprints {
         rule: &FootprintRule,
         covered: u8,
     ) -> Self {
+        if field.is_none() {
+            // Nothing is moved: the hit is the base place, which is bounded once for both.
+            let zero = [PixelLanes::ZERO; 2];
+            let [dx, dy] = differences(uv, &zero, rule);
+            return Self { base: *uv, hit: *uv, dx, dy, displacement: zero, covered }.bounded();
+        }
         let (displacement, offset) = traced(uv, view, field, rule.is_traced);
         let [dx, dy] = differences(uv, &offset, rule);
         let hit = [uv[0] + offset[0], uv[1] + offset[1]];
@@ -158,7 +164,8 @@ impl Footprints {
         // Long derivatives are rare: their division stays out of the common path.
         let all_short =
             (is_short(dx[0]) & is_short(dx[1]) & is_short(dy[0]) & is_short(dy[1])).all();
-        let [dx, dy] = if all_short { [dx, dy] } else { [shortened(dx), shortened(dy)] };
+        let [dx, dy] =
+            if all_short { [dx, dy] } else { [dx, dy].map(|d| in_registers(shortened(d))) };
         Self { base: bounded_place(self.base), hit: bounded_place(self.hit), dx, dy, ..self }
     }
 }
@@ -196,10 +203,19 @@ fn traced(
     (displacement, displacement.map(|displacement| displacement * depth))
 }
 
+/// The result of a call, which lies in memory, taken apart: where two ways meet, the other one then
+/// keeps its vectors in registers.
+#[inline(always)]
+pub(super) fn in_registers<T: Copy>([a, b]: [T; 2]) -> [T; 2] {
+    [a, b]
+}
+
 /// Places, with 0 for a coordinate that is not within 1e6 repeats.
 #[inline(always)]
-fn bounded_place(place: Uv) -> Uv {
-    place.map(|c| c.abs().simd_le(PixelLanes::splat(FARTHEST)).select(c, PixelLanes::ZERO))
+fn bounded_place([u, v]: Uv) -> Uv {
+    let bounded =
+        |c: PixelLanes| c.abs().simd_le(PixelLanes::splat(FARTHEST)).select(c, PixelLanes::ZERO);
+    [bounded(u), bounded(v)]
 }
 
 /// A derivative, shortened where it is longer than 16 repeats, and 0 for what is not a number.

@@ -122,7 +122,7 @@ impl<'a> Shader<'a> {
             }));
         }
         // Filter all pairs at once, so that pixels near each other can share work.
-        filtered.clear();
+        // Whatever an earlier block left stays: each covered pixel is written, others are not looked at.
         filtered.resize(pairs.len(), Filtered::default());
         let batch = Batch { pixels: footprints, lights, is_alone: false };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
