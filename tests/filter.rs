@@ -419,6 +419,12 @@ proptest! {
         }
     }
 
+}
+
+proptest! {
+    // The reference goes line by line: a case takes milliseconds.
+    #![proptest_config(cases(4_000))]
+
     #[test]
     fn horizon_mean_is_the_references(made in any_maps(), pixel in pixel(0.5, 1.0)) {
         let surface = made.surface();
@@ -445,9 +451,10 @@ fn reference_lines<'a>(surface: &'a Surface, pixel: &Footprint) -> Lines<'a> {
         center,
         displacement,
         spacing: 1.0,
+        steps_per_row: 1,
     };
     let width = 2.0 * lines.half_width();
-    Lines { spacing: width / (0.65 * 64.0), ..lines }
+    Lines { spacing: width / (0.65 * 64.0), ..lines }.with_half_rows()
 }
 
 /// A floor's footprint: `aspect` times as long along the view as across.

@@ -260,9 +260,16 @@ fn the_horizon_is_the_reference() {
         let [center, displacement] =
             [pixel.base, pixel.displacement].map(|p| in_texels(surface, p));
         let conic = ellipse(surface, pixel, 0.0);
-        let lines = Lines { level: surface.base(), conic, center, displacement, spacing: 1.0 };
+        let lines = Lines {
+            level: surface.base(),
+            conic,
+            center,
+            displacement,
+            spacing: 1.0,
+            steps_per_row: 1,
+        };
         // As many lines as the filter takes when it is asked for 64 texels across.
-        Lines { spacing: 2.0 * lines.half_width() / (0.65 * 64.0), ..lines }.mean()
+        Lines { spacing: 2.0 * lines.half_width() / (0.65 * 64.0), ..lines }.with_half_rows().mean()
     };
     let filter = Filter::Horizon(Horizon { lines: 64, far_field: false, ..Horizon::default() });
     let thresholds = Thresholds { tolerance: 1.5 / 255.0, share: 0.0 };

@@ -76,7 +76,7 @@ fn filters() -> Vec<Filter> {
         Filter::Ewa(Ewa { every_texel: true, ..Ewa::default() }),
         Filter::Ewa(Ewa { texel_budget: 0, ..Ewa::default() }),
         Filter::Visible(Visible { texel_budget: 32, ..Visible::default() }),
-        Filter::Horizon(Horizon { far_field: false, ..Horizon::default() }),
+        Filter::Horizon(Horizon { lines: 6, far_field: false, ..Horizon::default() }),
         Filter::Horizon(Horizon { lines: 4, far_field_mib: 1, ..Horizon::default() }),
         Filter::Parallax(Rays { samples: 1 }),
     ]);

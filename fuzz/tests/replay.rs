@@ -1,4 +1,4 @@
-//! The fuzz targets without a fuzzer: their corpora with past findings, and 10,000 random or
+//! The fuzz targets without a fuzzer: their corpora with past findings, and 5,000 random or
 //! damaged inputs each.
 
 use fastrand::Rng;
@@ -45,7 +45,7 @@ fn damaged(random: &mut Rng, seeds: &[(String, Vec<u8>)]) -> Vec<u8> {
     bytes
 }
 
-/// Replays a target's corpus, then 10,000 inputs from a fixed seed; `BASRELIEF_CASES` says how many
+/// Replays a target's corpus, then 5,000 inputs from a fixed seed; `BASRELIEF_CASES` says how many
 /// instead.
 fn replay(target: &str, run: fn(&[u8])) {
     let seeds = corpus(target);
@@ -55,7 +55,7 @@ fn replay(target: &str, run: fn(&[u8])) {
     };
     seeds.iter().for_each(|(path, bytes)| check(path, bytes));
     let num =
-        std::env::var("BASRELIEF_CASES").ok().and_then(|num| num.parse().ok()).unwrap_or(10_000);
+        std::env::var("BASRELIEF_CASES").ok().and_then(|num| num.parse().ok()).unwrap_or(5_000);
     let mut random = Rng::with_seed(2017);
     (0..num).for_each(|i| check(&format!("input {i}"), &damaged(&mut random, &seeds)));
 }

@@ -47,9 +47,14 @@ const MOST_BLUR: f32 = 1.7;
 /// many.
 const TABLE_TEXELS_ACROSS: f32 = 3.0;
 
-/// Most texels of a table along the longer axis: a thin footprint at the horizon takes a coarser
-/// table, since time goes with the length.
-const TABLE_TEXELS_ALONG: f32 = 32.0;
+/// Most texels of a table along the longer axis, which bounds a pixel's time: a longer footprint
+/// takes a coarser table. With 32 a street ends in flat rows, where the truth has streaks up to the
+/// vanishing point; 96 is 5 dB better in the last rows, 256 another 0.5.
+const TABLE_TEXELS_ALONG: f32 = 256.0;
+
+/// What the mean over a texel adds to the squares of an ellipse's half axes: four times the variance
+/// of a square.
+const TABLE_BOX: f32 = 1.0 / 3.0;
 
 /// The finer level and the share of the coarser one for a texel size, in base texels: linear in
 /// size between two levels.
@@ -230,6 +235,8 @@ pub fn for_tables(
     let [short, long] = ellipse.squared_axes();
     // A thin ellipse may fall between texels: it gets their kernel.
     let kernel = RECONSTRUCTION * (2.0 - short).clamp(0.0, 1.0);
-    let f = if kernel > 0.0 { (short + kernel) * (long + kernel) } else { ellipse.f };
+    // A table's texels are means of squares already: the ellipse is made narrower by as much.
+    let kernel = kernel - TABLE_BOX.min(0.5 * short);
+    let f = (short + kernel) * (long + kernel);
     (level, Ellipse { a: ellipse.a + kernel, b: ellipse.b, c: ellipse.c + kernel, f })
 }

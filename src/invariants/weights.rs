@@ -56,7 +56,8 @@ pub fn records_are_visible(surface: &Surface, pixel: &Footprint, max_anisotropy:
         // to behind it.
         let middle = texel.map(|c| f64::from(c) + 0.5);
         let is_record =
-            Lines { level, conic, center: middle, displacement, spacing: 1.0 }.is_record(texel);
+            Lines { level, conic, center: middle, displacement, spacing: 1.0, steps_per_row: 1 }
+                .is_record(texel);
         ensure(is_record == (margin <= 0.0) || margin.abs() < RAY_TIE, || {
             format!("{texel:?}: record {is_record}, relief {margin} of its depth above the ray")
         })?;

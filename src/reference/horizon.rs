@@ -3,7 +3,8 @@
 //! A line at `xi` across runs along the displacement `D`; texel rows cross it at whole places. Row
 //! i lies at `eta_i` along the line, from the middle of the ellipse, and is seen over
 //! `p_i = eta_i - d_i |D|`. The line's part of the kernel is `exp(-2 r^2)`,
-//! `r^2 = r0^2 + C' (eta - eta0)^2`, and the eye sees what makes a new record of `p`.
+//! `r^2 = r0^2 + C' (eta - eta0)^2`, and the eye sees what makes a new record of `p`. A bilinear
+//! surface bends between two rows where a line leans: such lines are read half way between, too.
 
 use super::formulas::Conic;
 use super::stored::{color, exp_negative, height, integral};
@@ -23,13 +24,14 @@ pub struct Lines<'a> {
     pub displacement: [f64; 2],
     /// Distance between two lines in texels, measured across.
     pub spacing: f64,
+    /// 1; or 2 where lines are read half way between rows, too.
+    pub steps_per_row: i64,
 }
 
-/// A place on a line in a row: two neighbouring texels and how far it lies towards the second.
+/// A place on a line: the texels around it with their shares, and where it is seen.
 struct Crossing {
     p: f64,
-    texels: [[i32; 2]; 2],
-    part: f64,
+    texels: [([i32; 2], f64); 4],
 }
 
 impl Lines<'_> {
@@ -64,6 +66,12 @@ impl Lines<'_> {
         // Rows nearer than the deepest relief cannot reach over the texel's place.
         let first = -(self.depth().abs().ceil() as i64) - 1;
         (first..0).all(|i| self.crossing(i, 0.0).p <= own)
+    }
+
+    /// The same lines, read half way between rows where the sweep does so on the base level.
+    pub fn with_half_rows(self) -> Self {
+        let is_kinked = self.shear().abs() > 0.15 && self.half_width() < 4.0;
+        Self { steps_per_row: if is_kinked { 2 } else { 1 }, ..self }
     }
 
     /// Half the width of the ellipse across the lines.
@@ -111,18 +119,29 @@ impl Lines<'_> {
         if self.depth() < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Where the line at `xi` crosses row `i`, counted from the middle in the walking direction.
+    /// The line at `xi` at step `i`, counted from the middle in the walking direction: where it
+    /// crosses a row, or half way to the next.
     fn crossing(&self, i: i64, xi: f64) -> Crossing {
         let toward = self.toward();
         let [x0, y0] = self.turned([self.center[0] - 0.5, self.center[1] - 0.5]);
-        let y = (toward * y0).floor() + i as f64;
-        let eta = y - toward * y0;
+        let step = i as f64 / self.steps_per_row as f64;
+        let y = (toward * y0).floor() + step.floor();
+        let down = step - step.floor();
+        let eta = y + down - toward * y0;
         let x = x0 + self.shear() * toward * eta + xi;
-        let texels =
-            [0.0, 1.0].map(|far| self.turned([x.floor() + far, toward * y]).map(|c| c as i32));
-        let (part, [near, far]) = (x - x.floor(), texels.map(|texel| height(self.level, texel)));
-        let p = eta - (1.0 - (near + (far - near) * part)) * self.depth().abs();
-        Crossing { p, texels, part }
+        let part = x - x.floor();
+        let corners = [
+            (0.0, 0.0, (1.0 - part) * (1.0 - down)),
+            (1.0, 0.0, part * (1.0 - down)),
+            (0.0, 1.0, (1.0 - part) * down),
+            (1.0, 1.0, part * down),
+        ];
+        let texels = corners.map(|(across, along, share)| {
+            (self.turned([x.floor() + across, toward * (y + along)]).map(|c| c as i32), share)
+        });
+        let height: f64 =
+            texels.iter().map(|(texel, share)| height(self.level, *texel) * share).sum();
+        Crossing { p: eta - (1.0 - height) * self.depth().abs(), texels }
     }
 
     fn sweep(&self, xi: f64, weights: &mut BTreeMap<[i32; 2], f64>) {
@@ -133,8 +152,8 @@ impl Lines<'_> {
         let middle = -toward * b * xi / (2.0 * c);
         let (entry, exit) = (middle - half, middle + half);
         let integral_at = |p: f64| integral((p - middle) * c.sqrt());
-        let first = entry.floor() as i64 - 2;
-        let last = (exit + self.depth().abs()).ceil() as i64 + 2;
+        let first = (entry.floor() as i64 - 2) * self.steps_per_row;
+        let last = ((exit + self.depth().abs()).ceil() as i64 + 2) * self.steps_per_row;
         let (mut previous, mut horizon) = (self.crossing(first, xi), entry);
         for next in (first + 1..=last).map(|i| self.crossing(i, xi)) {
             let record = next.p.min(exit).max(horizon);
@@ -156,9 +175,7 @@ impl Lines<'_> {
 }
 
 fn add(weights: &mut BTreeMap<[i32; 2], f64>, crossing: &Crossing, weight: f64) {
-    let shares = [1.0 - crossing.part, crossing.part];
-    for (texel, share) in crossing.texels.into_iter().zip(shares).filter(|(_, share)| *share > 0.0)
-    {
+    for (texel, share) in crossing.texels.into_iter().filter(|(_, share)| *share > 0.0) {
         *weights.entry(texel).or_default() += weight * share;
     }
 }

@@ -9,7 +9,7 @@
 //! where its own would lose too much.
 
 use super::directions::{Lengths, NUM_LENGTHS};
-use super::seen::{Seen, seen_image, square_difference};
+use super::seen::{Seen, View, seen_image, square_difference};
 use crate::texture::Surface;
 use rayon::prelude::*;
 use std::sync::OnceLock;
@@ -64,15 +64,6 @@ impl LevelLoss {
         usize::from(self.of_length(surface, (self.lengths.place_of(displacement) + 0.5) as usize))
     }
 
-    /// How much of a displacement's two nearest lengths, 0 to 1, lose anything.
-    pub fn share(&self, surface: &Surface, displacement: [f32; 2]) -> f32 {
-        let place = self.lengths.place_of(displacement);
-        let near = (place as usize).min(NUM_LENGTHS - 2);
-        let [a, b] =
-            [near, near + 1].map(|length| f32::from(self.of_length(surface, length).min(1)));
-        a + (b - a) * (place - near as f32)
-    }
-
     fn of_length(&self, surface: &Surface, length: usize) -> u8 {
         *self.bias[length].get_or_init(|| self.measure(surface, length))
     }
@@ -80,14 +71,15 @@ impl LevelLoss {
     fn measure(&self, surface: &Surface, length: usize) -> u8 {
         let Some(compared) = self.compared else { return 0 };
         let size = surface.levels()[compared].size();
-        let displacements = PROBES.map(|angle| self.lengths.displacement(length, angle));
+        let views = PROBES.map(|angle| View {
+            displacement: self.lengths.displacement(length, angle),
+            plane: surface.mean_depth(),
+        });
         // See the relief on the base level, which loses nothing.
-        let exact = displacements
-            .map(|displacement| seen_image(surface, Seen::Heights, 0, size, displacement));
+        let exact = views.map(|view| seen_image(surface, Seen::Heights, 0, size, view));
         let is_lost = |level: usize| {
-            let probes = displacements.iter().zip(&exact);
-            let squares = probes.map(|(d, exact)| {
-                square_difference(exact, &seen_image(surface, Seen::Heights, level, size, *d))
+            let squares = views.iter().zip(&exact).map(|(view, exact)| {
+                square_difference(exact, &seen_image(surface, Seen::Heights, level, size, *view))
             });
             (squares.sum::<f32>() / PROBES.len() as f32).sqrt() > MOST_LOSS[level - 1]
         };

@@ -2,8 +2,8 @@
 //!
 //! A floating-horizon sweep over a whole level: lines run in the direction of the displacement, a
 //! texel apart, and are walked row by row along its longer axis (see `filter::horizon`). The
-//! visible part of each segment, moved onto the mean depth plane, is cut at the image's rows and
-//! added to the image's texel that it falls into; a texel is the mean of what falls into it.
+//! visible part of each segment, moved along the view onto one plane, is cut at the image's rows
+//! and added to the image's texel that it falls into; a texel is the mean of what falls into it.
 //!
 //! ```text
 //!  row i-1          row i           record M so far: what lies before it is hidden
@@ -30,16 +30,25 @@ pub enum Seen {
     Heights,
 }
 
-/// The image of `surface` seen along `displacement` (base texels down to the deepest relief), swept
-/// on a mip level, in an image of `size`, which is at most the level's, addressed by the place on
-/// the mean depth plane.
+/// How a surface is seen.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Base texels down to the deepest relief.
+    pub displacement: [f32; 2],
+    /// The depth of the plane, 0 to 1, on which an image has its places.
+    pub plane: f32,
+}
+
+/// The image of `surface` seen in a view, swept on a mip level, in an image of `size`, which is at
+/// most the level's.
 pub fn seen_image(
     surface: &Surface,
     seen: Seen,
     level: usize,
     size: [usize; 2],
-    [du, dv]: [f32; 2],
+    view: View,
 ) -> SeenImage {
+    let [du, dv] = view.displacement;
     let source = &surface.levels()[level];
     let [to, from] = [source, surface.base()].map(|level| level.size().map(|n| n as f32));
     let (du, dv) = (du * (to[0] / from[0]), dv * (to[1] / from[1]));
@@ -48,9 +57,9 @@ pub fn seen_image(
     let is_turned = du.abs() > dv.abs();
     let rows = source.rows(is_turned);
     let mut sweep = if is_turned {
-        Sweep::new((rows, seen), [dv, du], surface.mean_depth(), [size[1], size[0]])
+        Sweep::new((rows, seen), [dv, du], view.plane, [size[1], size[0]])
     } else {
-        Sweep::new((rows, seen), [du, dv], surface.mean_depth(), size)
+        Sweep::new((rows, seen), [du, dv], view.plane, size)
     };
     for first in (0..sweep.rows.width()).step_by(8) {
         sweep.lines(first);
@@ -61,6 +70,24 @@ pub fn seen_image(
         return sweep.sums.iter().map(mean).collect();
     }
     (0..size[0] * size[1]).map(|i| mean(&sweep.sums[i % size[0] * size[1] + i / size[0]])).collect()
+}
+
+/// The mean depth of what is seen of `surface` along displacements, 0 to 1, in images of `size`
+/// swept on a mip level: what is seen of a deep part counts by its size on the screen.
+pub fn seen_depth(
+    surface: &Surface,
+    level: usize,
+    size: [usize; 2],
+    displacements: &[[f32; 2]],
+) -> f32 {
+    // A mean over a whole repeat is the same on any plane.
+    let plane = surface.mean_depth();
+    let sum_of = |&displacement: &[f32; 2]| {
+        let image = seen_image(surface, Seen::Heights, level, size, View { displacement, plane });
+        image.iter().map(|[height, ..]| f64::from(1.0 - height)).sum::<f64>() / image.len() as f64
+    };
+    let sum: f64 = displacements.iter().map(sum_of).sum();
+    (sum / displacements.len() as f64) as f32
 }
 
 /// The mean square of the differences of two images.
@@ -77,7 +104,7 @@ struct Sweep<'a> {
     toward: f32,
     depth: f32,
     shear: f32,
-    mean_depth: f32,
+    plane: f32,
     size: [usize; 2],
     /// Image texels per texel of the level.
     scale: [f32; 2],
@@ -96,14 +123,14 @@ impl<'a> Sweep<'a> {
     fn new(
         (rows, seen): (&'a Rows, Seen),
         [dx, dy]: [f32; 2],
-        mean_depth: f32,
+        plane: f32,
         size: [usize; 2],
     ) -> Self {
         let shear = if dy == 0.0 { 0.0 } else { dx / dy };
         let scale = [size[0] as f32 / rows.width() as f32, size[1] as f32 / rows.height() as f32];
         let toward = if dy < 0.0 { -1.0 } else { 1.0 };
         let sums = vec![[0.0; 4]; size[0] * size[1]];
-        Self { rows, seen, toward, depth: dy.abs(), shear, mean_depth, size, scale, sums }
+        Self { rows, seen, toward, depth: dy.abs(), shear, plane, size, scale, sums }
     }
 
     /// Walks eight lines over one period of the pattern, after a walk that finds what hides its
@@ -115,8 +142,7 @@ impl<'a> Sweep<'a> {
         let mut previous = self.row(first, -lead);
         let mut horizon = previous.place;
         // What is seen of one period: between the record at its beginning and the same a period on.
-        let (begin, end) =
-            (-self.depth * self.mean_depth, num_rows as f32 - self.depth * self.mean_depth);
+        let (begin, end) = (-self.depth * self.plane, num_rows as f32 - self.depth * self.plane);
         let last = num_rows + self.depth as i32 + 1;
         for i in 1 - lead..=last {
             let row = self.row(first, i);
@@ -186,7 +212,7 @@ impl<'a> Sweep<'a> {
                 .fast_min(TexelLanes::ONE);
             let value =
                 |i: usize| (near.values[i] + (far.values[i] - near.values[i]) * at) * length;
-            let eta = (middle + self.depth * self.mean_depth) * self.toward;
+            let eta = (middle + self.depth * self.plane) * self.toward;
             // Texel centres lie at whole numbers.
             let x = ((line + eta * self.shear + 0.5) * self.scale[0])
                 .floor()

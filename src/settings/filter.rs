@@ -122,9 +122,9 @@ pub struct Visible {
 /// What [`Filter::Horizon`] can be told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon {
-    /// Most texels across a footprint's shorter axis, 2 to 64: picks the mip level, and how finely
-    /// lines and bins cut the footprint (two lines for three texels, five at least). More is finer
-    /// and slower. Default: 10.
+    /// How finely footprints are cut, 2 to 64: two lines for three of these, five at least, on a mip
+    /// level with at most twice as many texels across. More is finer and slower: 4 is fast, 24 is as
+    /// good as it gets. Default: 12.
     pub lines: u32,
     /// Whether tables of the seen colour serve distant footprints, unlit. Default: `true`.
     pub far_field: bool,
@@ -169,7 +169,7 @@ const VISIBLE: Visible = Visible {
     max_stretch: 4.0,
 };
 const HORIZON: Horizon =
-    Horizon { lines: 10, far_field: true, far_field_mib: 32, max_anisotropy: MAX_ANISOTROPY };
+    Horizon { lines: 12, far_field: true, far_field_mib: 32, max_anisotropy: MAX_ANISOTROPY };
 const RAYS: Rays = Rays { samples: 64 };
 
 impl Default for Trilinear {

@@ -45,6 +45,15 @@ pub(crate) fn number(text: &str) -> Result<f32, String> {
     check::number(text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?)
 }
 
+/// How finely the horizon cuts footprints: a named point or a number.
+pub(crate) fn lines(text: &str) -> Result<u32, String> {
+    const NAMED: [(&str, u32); 3] = [("fast", 4), ("default", 12), ("best", 24)];
+    let named = NAMED.iter().find(|(word, _)| *word == text).map(|(_, lines)| *lines);
+    named
+        .or_else(|| digits(text.trim()).filter(|lines| (2..=64).contains(lines)))
+        .ok_or_else(|| "is not fast, default, best or 2 to 64".into())
+}
+
 /// A number of degrees above 0 and below 180.
 pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
     check::field_of_view(number(text)?)

@@ -40,6 +40,8 @@ pub(super) struct Grid<'a> {
     pub(super) begin: f32,
     pub(super) step: f32,
     pub(super) num_bins: usize,
+    /// 1; or 2 where lines are read half way between rows, too.
+    pub(super) steps_per_row: i32,
 }
 
 /// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then

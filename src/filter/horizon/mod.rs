@@ -36,7 +36,7 @@ use super::prepared::Prepared;
 use crate::footprint::Footprints;
 use crate::settings::Horizon;
 use crate::simd::PixelLanes;
-use crate::texture::Texel;
+use crate::texture::{Surface, Texel};
 use patch::{MOST_PIXELS, PatchScratch, Patches};
 
 /// Vectors of pixels that may share a sweep.
@@ -77,7 +77,7 @@ pub(super) fn colors(
     let mut num_rows = 0;
     for (pixels, out) in batch.pixels.chunks(NUM_VECTORS).zip(out.chunks_mut(NUM_VECTORS)) {
         let HorizonScratch { patch, shares, near, found } = scratch;
-        share_out(prepared, far, pixels, horizon, (shares, near));
+        share_out(surface, far, pixels, horizon, (shares, near));
         // Sweep what is near.
         found.clear();
         found.resize(near.len(), Texel::default());
@@ -119,7 +119,7 @@ pub(super) fn levels(
     let mut all = Vec::with_capacity(pixels.len());
     for pixels in pixels.chunks(NUM_VECTORS) {
         let HorizonScratch { patch, shares, near, .. } = scratch;
-        share_out(prepared, far.as_deref(), pixels, horizon, (shares, near));
+        share_out(prepared.surface(), far.as_deref(), pixels, horizon, (shares, near));
         let mut levels = Vec::with_capacity(near.len());
         patches(prepared, pixels, horizon, picture_bins(horizon, is_lit), is_lit).levels(
             near,
@@ -151,7 +151,7 @@ fn far_field(
 
 /// How much of each pixel the tables give, and the pixels that they do not give wholly.
 fn share_out(
-    prepared: &Prepared,
+    surface: &Surface,
     far: Option<&FarField>,
     pixels: &[Footprints],
     horizon: &Horizon,
@@ -160,7 +160,7 @@ fn share_out(
     shares.clear();
     near.clear();
     for (vector, pixels) in pixels.iter().enumerate() {
-        let of_far = |far: &FarField| far.shares(prepared, pixels, horizon.max_anisotropy);
+        let of_far = |far: &FarField| far.shares(surface, pixels, horizon.max_anisotropy);
         let of_far = far.map_or(PixelLanes::ZERO, of_far).to_array();
         near.extend(
             pixels

@@ -22,10 +22,27 @@ pub(super) const MOST_PIXELS: usize = 256;
 
 const _: () = assert!(MOST_PIXELS <= 1 << u8::BITS, "a pick is a byte");
 
+/// Texels across a footprint at the most, for each that the settings ask for: a finer level pays
+/// better than more lines. Measured, 400x225, floor with shaded colours: 1 gives 38.9 dB, 2 gives
+/// 46.0 in half as much time again.
+const TEXELS: f32 = 2.0;
+
 /// Lines across the widest ellipse of a patch for each texel that the settings ask for, unless that
 /// puts them farther apart than [`WIDEST`]; and the fewest. Fewer lines than texels serve, since a
 /// line's colours are interpolated.
 const LINES: [f32; 2] = [0.65, 5.0];
+
+/// The same on the base level, where lines come closer until they are a texel apart: nothing finer
+/// is left to pay for. 2.2 dB on the wall at 640x360, 4 on the floor at 1280x720.
+const BASE_LINES: f32 = 1.3;
+
+/// Where texels are about as large as pixels, and lines lean by at least so much, they are read half
+/// way between rows, too: a bilinear surface has a kink wherever a line crosses a column, and bends
+/// between. 2.5 dB on the wall at 1280x720, for a tenth of its time.
+const LEAST_SHEAR: f32 = 0.15;
+
+/// Greatest half width, in texels, of an ellipse that shows such kinks.
+const KINK_WIDTH: f32 = 4.0;
 
 /// Greatest distance between lines in texels: sixteen lines and their neighbours lie within 32
 /// texels, two loads.
@@ -180,7 +197,14 @@ impl<'a> Patches<'a> {
         }
         // Set the lines so close that sixteen lie within two loads where they are farthest apart.
         let most_scale = frame.greatest_scale([extent.q[0] - 1.0, extent.q[0] + num_rows + 1.0])?;
-        let num_lines = (LINES[0] * self.horizon.lines as f32).max(LINES[1]);
+        let lines = self.horizon.lines as f32;
+        let num_lines = (LINES[0] * lines).max(LINES[1]);
+        // Lines that are a texel apart see all that there is.
+        let num_lines = if level == 0 {
+            num_lines.max((2.0 * extent.half_width).min(BASE_LINES * lines))
+        } else {
+            num_lines
+        };
         let spacing = (WIDEST / most_scale).min(extent.half_width * (2.0 / num_lines));
         Some(Plan { level, frame, extent, most_scale, spacing, step })
     }
@@ -250,8 +274,9 @@ impl<'a> Patches<'a> {
         let across = 2.0 * (most * least).sqrt().sqrt();
         let extent =
             SweepExtent { across, along: 2.0 * long.sqrt(), depth: du.abs().max(dv.abs()) };
-        let finer_by =
-            |bias: usize| for_sweep(self.surface, &extent, (self.horizon.lines << bias) as f32);
+        let finer_by = |bias: usize| {
+            for_sweep(self.surface, &extent, TEXELS * (self.horizon.lines << bias) as f32)
+        };
         let level = finer_by(0);
         let bias = match self.loss {
             // Nothing is finer than the base level.
@@ -317,6 +342,10 @@ impl Plan<'_> {
         let num_lines = 2 * ((xi[1] - xi[0]) * (0.5 / spacing)).ceil() as usize;
         let first = (xi[0] + xi[1]) * 0.5 - spacing * (num_lines as f32 * 0.5 - 0.5);
         let num_bins = ((q[1] - q[0]) / self.step).ceil().max(1.0) as usize;
+        let is_kinked = self.level == 0
+            && self.frame.shear.abs() > LEAST_SHEAR
+            && self.extent.half_width < KINK_WIDTH;
+        let steps_per_row = if is_kinked { 2 } else { 1 };
         let mut num_rows = 0;
         // Sweep a grid at a time, and weigh it before the next: its bins are still in the cache.
         for line in (0..num_lines).step_by(MOST_LINES) {
@@ -329,6 +358,7 @@ impl Plan<'_> {
                 begin: q[0],
                 step: self.step,
                 num_bins,
+                steps_per_row,
             };
             for (group, range) in grid.ranges(pixels).into_iter().enumerate() {
                 if range[0] < range[1] {

@@ -29,30 +29,33 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let lines = Lines::new(grid, group * GROUP);
         let [start, end] = [first_bin, end_bin].map(|bin| grid.begin + bin as f32 * grid.step);
         let mut walk = Walk::<CHANNELS>::new(grid.num_lines, group * GROUP, [first_bin, end_bin]);
-        let first_row = lines.row_before(start);
+        let steps = grid.steps_per_row;
+        let first = lines.row_before(start) * steps;
         // The deepest relief of the last row is seen behind all bins.
-        let end_row = first_row + lines.rows_between(start, end);
-        let mut last = lines.texels::<CHANNELS>(first_row, lines.start_of(first_row));
-        let mut row = first_row + 1;
+        let end_step = first + lines.rows_between(start, end) * steps;
+        let mut read =
+            [Texels { values: [LineLanes::ZERO; CHANNELS], place: LineLanes::ZERO }; READ_AHEAD];
+        lines.read(first, &mut read[..1]);
+        let mut last = read[0];
+        let mut step = first + 1;
         // Read rows ahead, so that no branch on what they show waits for memory. A texel is never
         // seen beyond its own row, so the first `end - start` rows cannot reach the exit: they are
         // read in one block.
-        let mut read = [last; READ_AHEAD];
-        let mut num_read = ((end - start) as usize).clamp(1, READ_AHEAD);
-        while !walk.is_done() && row < end_row {
-            lines.read(row, &mut read[..num_read]);
+        let mut num_read = ((end - start) as usize * steps as usize).clamp(1, READ_AHEAD);
+        while !walk.is_done() && step < end_step {
+            lines.read(step, &mut read[..num_read]);
             let mut before = &last;
             for next in &read[..num_read] {
                 walk.pass(before, next, &mut self.bins);
                 before = next;
             }
             last = read[num_read - 1];
-            row += num_read as i32;
+            step += num_read as i32;
             // Toward the exit any row may be the last: smaller blocks waste less.
             num_read = READ_AHEAD / 4;
         }
         walk.finish(&last, &mut self.bins);
-        (row - first_row) as u64
+        (step - first) as u64
     }
 }
 
@@ -67,6 +70,8 @@ struct Lines<'a> {
     /// Bins a row, and bins from the middle to the first one.
     scale: f32,
     begin: f32,
+    /// 2 where half rows are read, too.
+    steps_per_row: i32,
     /// The middle's row in the walking direction, and whether that is up (1) or down (-1).
     middle: f32,
     sign: i32,
@@ -87,6 +92,7 @@ impl<'a> Lines<'a> {
             depth_bins,
             scale,
             begin,
+            steps_per_row: grid.steps_per_row,
             middle: frame.toward * frame.origin[1],
             sign: frame.toward as i32,
         }
@@ -103,48 +109,69 @@ impl<'a> Lines<'a> {
         (end * (1.0 + self.frame.growth) + depth).max(end) as i32 - start as i32 + 4
     }
 
-    /// The texels of neighbouring rows from `first` on.
+    /// The texels of neighbouring steps from `first` on.
     #[inline(always)]
     fn read<const CHANNELS: usize>(&self, first: i32, read: &mut [Texels<CHANNELS>]) {
+        if self.steps_per_row > 1 {
+            return read.iter_mut().zip(first..).for_each(|(read, step)| *read = self.half(step));
+        }
         let mut starts = [0; READ_AHEAD];
         let (words, stride) = (self.frame.rows.words(), self.frame.rows.stride());
         // Touch one word of each plane first, so that cache misses of many rows overlap: the work
         // on a row is too long for the processor to look ahead.
         let mut touched = 0;
         for (start, row) in starts[..read.len()].iter_mut().zip(first..) {
-            *start = self.start_of(row);
+            *start = self.start_of(row, self.columns(row as f32 - self.middle));
             touched |= words[*start] | words[*start + stride];
         }
         std::hint::black_box(touched);
         for ((read, start), row) in read.iter_mut().zip(starts).zip(first..) {
-            *read = self.texels(row, start);
+            let q = row as f32 - self.middle;
+            *read = self.seen(q, self.values(start, self.columns(q)));
         }
     }
 
-    /// Where the lines lie in a row, in texels.
+    /// A row or, at odd steps, what lies half way to the next one.
+    #[inline(never)]
+    fn half<const CHANNELS: usize>(&self, step: i32) -> Texels<CHANNELS> {
+        let row = step.div_euclid(2);
+        let q = step as f32 * 0.5 - self.middle;
+        let x = self.columns(q);
+        let (values, height) = self.values(self.start_of(row, x), x);
+        if step % 2 == 0 {
+            return self.seen(q, (values, height));
+        }
+        let (others, other_height) = self.values::<CHANNELS>(self.start_of(row + 1, x), x);
+        let mean = |a: LineLanes, b: LineLanes| (a + b) * 0.5;
+        let values = std::array::from_fn(|i| mean(values[i], others[i]));
+        self.seen(q, (values, mean(height, other_height)))
+    }
+
+    /// Where the lines lie at a distance from the middle, in texels.
     #[inline(always)]
-    fn columns(&self, row: i32) -> LineLanes {
+    fn columns(&self, q: f32) -> LineLanes {
         let SweepFrame { origin, shear, spread, .. } = *self.frame;
-        let q = row as f32 - self.middle;
         // Rows that are read ahead may lie where lines would run together, or farther apart than a
         // run of texels reaches.
         self.xi * (spread * q + 1.0).clamp(0.0, self.most_scale) + (origin[0] + shear * q)
     }
 
-    /// Where the run of texels around the lines in a row starts among the level's words.
+    /// Where the run of texels around columns of a row starts among the level's words.
     #[inline(always)]
-    fn start_of(&self, row: i32) -> usize {
-        let x = LineLanes::splat(self.columns(row).as_array()[0]);
+    fn start_of(&self, row: i32, x: LineLanes) -> usize {
+        let x = LineLanes::splat(x.as_array()[0]);
         // By lanes, since the scalar conversion saturates.
         self.frame.rows.start_at(x.floor().fast_trunc_int().as_array()[0], row * self.sign)
     }
 
-    /// The texels of a row.
+    /// The values and the heights at columns of a row, from where its run of texels starts.
     #[inline(always)]
-    fn texels<const CHANNELS: usize>(&self, row: i32, start: usize) -> Texels<CHANNELS> {
-        let SweepFrame { rows, growth, .. } = *self.frame;
-        let q = row as f32 - self.middle;
-        let x = self.columns(row);
+    fn values<const CHANNELS: usize>(
+        &self,
+        start: usize,
+        x: LineLanes,
+    ) -> ([LineLanes; CHANNELS], LineLanes) {
+        let rows = self.frame.rows;
         let place = x - LineLanes::splat(x.as_array()[0]).floor();
         let (words, stride) = (rows.words(), rows.stride());
         // Count each line's texel from the first line's, the start of the run.
@@ -167,10 +194,19 @@ impl<'a> Lines<'a> {
         } else if CHANNELS > 3 {
             values[CHANNELS - 1] = LineLanes::ONE;
         }
-        // Find where each texel is seen: p = (q - d D) / (1 + d c), in bins.
-        let down = LineLanes::ONE - high_halves(blue_height) * (1.0 / FULL_F32);
+        (values, high_halves(blue_height))
+    }
+
+    /// Where values are seen: p = (q - d D) / (1 + d c), in bins.
+    #[inline(always)]
+    fn seen<const CHANNELS: usize>(
+        &self,
+        q: f32,
+        (values, height): ([LineLanes; CHANNELS], LineLanes),
+    ) -> Texels<CHANNELS> {
+        let down = LineLanes::ONE - height * (1.0 / FULL_F32);
         let place = (LineLanes::splat(q * self.scale) - down * self.depth_bins)
-            / (down * growth + 1.0)
+            / (down * self.frame.growth + 1.0)
             - self.begin;
         Texels { values, place }
     }
