@@ -123,6 +123,9 @@ fn cases() -> Vec<Case> {
     for (name, visible) in visible_cases(visible) {
         add(name, Wrap::Repeat, small(Filter::Visible(visible)));
     }
+    let one_ray = small(Filter::Parallax(Rays { samples: 1 }));
+    add("Parallax mirror, one ray", Wrap::Mirror, one_ray.clone());
+    add("Parallax clamp, one ray", Wrap::Clamp, one_ray);
     let culled = Settings { cull_back_faces: true, msaa: 8, ..small(Filter::Visible(visible)) };
     add("culled, msaa 8", Wrap::Repeat, culled);
     add("4 lines", Wrap::Repeat, small(Filter::Horizon(Horizon { lines: 4, ..horizon })));
@@ -140,7 +143,10 @@ fn cases() -> Vec<Case> {
     ));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, small(Filter::Horizon(horizon))));
     // Texels a side that are no power of two wrap by a division.
-    for (name, filter) in [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa))] {
+    let parallax = Filter::Parallax(Rays { samples: 1 });
+    for (name, filter) in
+        [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa)), ("Parallax", parallax)]
+    {
         cases.push((format!("{name}, 50 texels"), Wrap::Repeat, 50, small(filter)));
     }
     cases

@@ -2,7 +2,7 @@
 
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Scratch, Work};
-use crate::footprint::Footprints;
+use crate::footprint::{Footprint, Footprints};
 use crate::light::{LocalLights, SurfacePoint};
 use crate::raster::{AttributePlanes, LitPlanes, Plane, Pool, QuadBlock, QuadPair};
 use crate::scene::{Material, Scene};
@@ -167,7 +167,6 @@ impl<'a> Shader<'a> {
         samples: &SampleOffsets,
         scratch: &mut ShadeScratch,
     ) -> [PixelLanes; 3] {
-        let field = ground.prepared.field();
         let none = [PixelLanes::ZERO; 3];
         // All samples share their pixel's derivatives, those of the flat polygon.
         let pixels =
@@ -181,32 +180,26 @@ impl<'a> Shader<'a> {
             let (mut sum, mut num) = (Vec3::ZERO, 0.0);
             for &([dx, dy], num_samples) in &samples.groups {
                 let (x, y) = (dx + center_x, dy + center_y);
-                // Beyond the horizon there is no surface to sample.
-                let is_before =
-                    eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
-                // The last group may hold fewer than eight samples.
-                let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
-                let (uv, view) = planes.at(x, y);
-                let rays = Footprints::of_samples(
-                    (&uv, &view),
-                    field,
-                    self.rule.is_traced,
-                    &pixels.lane(lane),
-                    covered,
-                );
+                let rays = self.rays(ground, planes, ([x, y], num_samples), &pixels.lane(lane));
+                // List their lights where each of them lies, or all where the pixel's centre does.
+                let ShadeScratch { filter, lights, .. } = scratch;
+                lights.clear();
+                lights.extend(rays.covered().filter_map(|i| {
+                    let own = [x.as_array()[i], y.as_array()[i]];
+                    let place = if samples.is_lit_apart { own } else { [center_x, center_y] };
+                    self.lights_at(pair, lane, place)
+                }));
                 let mut filtered = [Filtered::default()];
-                let batch = Batch { pixels: &[rays], lights: &[], is_alone: false };
+                let batch = Batch { pixels: &[rays], lights, is_alone: false };
                 self.count(self.settings.filter.colors(
                     ground.prepared,
                     &batch,
-                    &mut scratch.filter,
+                    filter,
                     &mut filtered,
                 ));
+                let mut lights = lights.iter();
                 for i in rays.covered() {
-                    let own = [x.as_array()[i], y.as_array()[i]];
-                    let place = if samples.is_lit_apart { own } else { [center_x, center_y] };
-                    let lights = self.lights_at(pair, lane, place);
-                    sum += self.lit(ground, &filtered[0].lane(i), lights.as_ref());
+                    sum += self.lit(ground, &filtered[0].lane(i), lights.next());
                     num += 1.0;
                 }
             }
@@ -214,6 +207,23 @@ impl<'a> Shader<'a> {
             colors[lane] = sum / f32::max(num, 1.0);
         }
         in_lanes(&colors)
+    }
+
+    /// The rays of up to eight samples of a pixel through places on the screen.
+    fn rays(
+        &self,
+        ground: &Ground,
+        planes: &AttributePlanes,
+        ([x, y], num_samples): ([PixelLanes; 2], usize),
+        pixel: &Footprint,
+    ) -> Footprints {
+        // Beyond the horizon there is no surface to sample.
+        let is_before = eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
+        // The last group may hold fewer than eight samples.
+        let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
+        let (uv, view) = planes.at(x, y);
+        let field = ground.prepared.field();
+        Footprints::of_samples((&uv, &view), field, self.rule.is_traced, pixel, covered)
     }
 
     fn is_lit(&self) -> bool {
