@@ -95,7 +95,9 @@ impl<'a> Relief<'a> {
         let last = cells.last_level();
         let (level, blend) = levels::of_sizes(size, last);
         let coarser = (level + 1).min(i32x8::splat(last as i32));
-        let [fine, coarse] = [level, coarser].map(|level| cells.rays(level, &[u, v], &[du, dv]));
+        let rays = |level| cells.rays(level, &[u, v], &[du, dv]);
+        // One after the other: an array of both would lie in memory.
+        let (fine, coarse) = (rays(level), rays(coarser));
         let is_blended = blend.simd_gt(PixelLanes::ZERO).any();
         Self { cells, fine, coarse, blend, is_blended }
     }
