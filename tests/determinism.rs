@@ -96,8 +96,10 @@ fn cases() -> Vec<Case> {
     let visible = Visible { texel_budget: 64, ..Visible::default() };
     let horizon = Horizon::default();
     let trilinear = Filter::Trilinear(Trilinear::default());
+    let ray = Filter::Parallax(Rays { samples: 1 });
     for (name, filter, narrow) in [
         ("Trilinear", trilinear, trilinear),
+        ("One ray", ray, ray),
         ("Ewa", Filter::Ewa(ewa), Filter::Ewa(Ewa { max_anisotropy: 4.0, ..ewa })),
         (
             "Visible",
@@ -123,9 +125,6 @@ fn cases() -> Vec<Case> {
     for (name, visible) in visible_cases(visible) {
         add(name, Wrap::Repeat, small(Filter::Visible(visible)));
     }
-    let one_ray = small(Filter::Parallax(Rays { samples: 1 }));
-    add("Parallax mirror, one ray", Wrap::Mirror, one_ray.clone());
-    add("Parallax clamp, one ray", Wrap::Clamp, one_ray);
     let culled = Settings { cull_back_faces: true, msaa: 8, ..small(Filter::Visible(visible)) };
     add("culled, msaa 8", Wrap::Repeat, culled);
     add("4 lines", Wrap::Repeat, small(Filter::Horizon(Horizon { lines: 4, ..horizon })));
@@ -143,10 +142,7 @@ fn cases() -> Vec<Case> {
     ));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, small(Filter::Horizon(horizon))));
     // Texels a side that are no power of two wrap by a division.
-    let parallax = Filter::Parallax(Rays { samples: 1 });
-    for (name, filter) in
-        [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa)), ("Parallax", parallax)]
-    {
+    for (name, filter) in [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa)), ("One ray", ray)] {
         cases.push((format!("{name}, 50 texels"), Wrap::Repeat, 50, small(filter)));
     }
     cases
