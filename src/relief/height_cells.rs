@@ -13,7 +13,7 @@
 //! cells and reads the few that are left where the surface has them.
 
 use crate::simd::{PixelLanes, as_unsigned, gather, high_halves, i32x8, join, low_halves, split};
-use crate::texture::{Level, Surface, Wrap};
+use crate::texture::{Level, Surface, Wrap, wrap_index};
 use rayon::prelude::*;
 
 /// Most cells: a place among them is a positive i32.
@@ -70,9 +70,9 @@ pub struct CellRays {
 impl HeightCells {
     /// The heights of a surface.
     pub fn new(surface: &Surface) -> Self {
-        let is_clamped = surface.wrap() == Wrap::Clamp;
+        let wrap = surface.wrap();
         // A clamped level has a row and a column of cells before its first texels.
-        let more = usize::from(is_clamped);
+        let more = usize::from(wrap == Wrap::Clamp);
         let num_cells = |level: &Level| level.size().map(|n| n + more);
         let (mut levels, mut num) = (Vec::new(), 0);
         for level in surface.levels().iter().rev() {
@@ -90,14 +90,18 @@ impl HeightCells {
         for (level, at) in surface.levels()[first..].iter().zip(&levels) {
             let [width, height] = num_cells(level);
             let rows = cells[at.start as usize..][..width * height].par_chunks_mut(width);
-            rows.enumerate()
-                .for_each(|(y, row)| fill(row, level, y as i32 - more as i32, is_clamped));
+            let edge = -(more as i32);
+            rows.enumerate().for_each(|(y, cells)| {
+                let y = edge + y as i32;
+                let rows = [y, y + 1].map(|y| wrap_index(wrap, y, level.size()[1]));
+                fill(cells, level, rows, edge);
+            });
         }
         let [w, h] = surface.base().size();
-        let fold = match is_clamped {
-            true => Fold::Clamp,
-            false if w.is_power_of_two() && h.is_power_of_two() => Fold::Mask,
-            false => Fold::Divide,
+        let fold = match wrap {
+            Wrap::Clamp => Fold::Clamp,
+            _ if w.is_power_of_two() && h.is_power_of_two() => Fold::Mask,
+            _ => Fold::Divide,
         };
         let patterns_per_repeat = surface.base().texels_per_repeat()[0] / w as f32;
         Self { cells, levels, first, fold, patterns_per_repeat }
@@ -182,20 +186,11 @@ impl HeightCells {
     }
 }
 
-/// Fills a row of cells, the row `y` of a level's pattern.
-fn fill(row: &mut [u64], level: &Level, y: i32, is_clamped: bool) {
+/// Fills a row of cells, from the column `first` on, with the heights of two stored rows.
+fn fill(cells: &mut [u64], level: &Level, rows: [usize; 2], first: i32) {
     let texels = level.rows(false);
-    let last = texels.height() as i32 - 1;
-    let above = if y < last {
-        y + 1
-    } else if is_clamped {
-        last
-    } else {
-        0
-    };
-    let first = -i32::from(is_clamped);
-    for (x, cell) in (first..).zip(row) {
-        let [[a, b], [c, d]] = [y.max(0), above].map(|y| texels.two_heights(x, y));
+    for (x, cell) in (first..).zip(cells) {
+        let [[a, b], [c, d]] = rows.map(|y| texels.two_heights(x, y as i32));
         *cell = u64::from(a | b << 16) | u64::from(c | d << 16) << 32;
     }
 }

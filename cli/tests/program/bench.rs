@@ -93,7 +93,7 @@ fn what_cannot_be_measured_is_refused() {
     folder.refuses(&format!("{wall} --json nowhere/run.json"), &["nowhere"]);
     folder.refuses("bench --scenes sea", &["--scenes", "sea"]);
     folder.refuses("bench --filters truth", &["--filters", "truth"]);
-    folder.refuses("bench --repeat 0", &["--repeat"]);
+    folder.refuses("bench --repeat 1", &["--repeat"]);
     folder.refuses("bench --size 0x9", &["--size"]);
     folder.refuses("bench --truth-samples 0", &["--truth-samples"]);
 }

@@ -67,7 +67,14 @@ fn filters(asked: &[Filter]) -> Result<Vec<Filter>, Refusal> {
 fn with_options(filter: Filter) -> Filter {
     match filter {
         Filter::Parallax(_) => Filter::Parallax(Rays { samples: 1 }),
-        other => other,
+        // Each is named, so that a new filter cannot be forgotten here.
+        Filter::Nearest
+        | Filter::Bilinear
+        | Filter::Trilinear(_)
+        | Filter::Ewa(_)
+        | Filter::Visible(_)
+        | Filter::Horizon(_)
+        | Filter::Truth(_) => filter,
     }
 }
 
