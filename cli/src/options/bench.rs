@@ -33,9 +33,9 @@ pub(crate) struct BenchOptions {
     /// Width and height in pixels of the frames that are timed
     #[arg(short, long, value_name = "WxH", default_value = "1280x720", value_parser = values::size, allow_hyphen_values = true)]
     pub(crate) size: [u32; 2],
-    /// Frames of each filter after one to warm up, 2 to 1000: the middle time counts, and how far
-    /// apart the times are tells the noise
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    /// Rounds, 2 to 1000: in each every filter draws a frame to warm up and one that is timed; the
+    /// middle time counts, and how far apart the times are tells the noise
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(2..=1000))]
     pub(crate) repeat: u32,
     /// Width and height in pixels of the pictures that are held against the truth
     #[arg(long, value_name = "WxH", default_value = "320x180", value_parser = values::size, allow_hyphen_values = true)]

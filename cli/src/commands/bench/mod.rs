@@ -12,7 +12,7 @@ use crate::options::threads::thread_pool;
 use crate::output;
 use crate::progress::Progress;
 use crate::refusal::Refusal;
-use crate::timing::draw_repeated;
+use crate::timing::{self, Took, draw_repeated};
 use against::Earlier;
 use basrelief::metrics::{Picture, compare};
 use basrelief::{Filter, Frame, Rays, Renderer, Settings};
@@ -85,55 +85,92 @@ struct Job<'a> {
     progress: &'a Progress,
 }
 
+/// A scene on its way.
+struct Subject {
+    name: &'static str,
+    standard: Standard,
+    renderer: Renderer,
+    /// For each filter its quality, and what its frames took.
+    found: Vec<(f64, Vec<Took>)>,
+}
+
 impl Job<'_> {
+    /// Measures everything. Frames are timed in rounds over all scenes and filters, so that what
+    /// else the machine does for a while is seen in the spread and does not fall on one filter.
     fn run(&self) -> Result<Vec<Case>, Refusal> {
         let asked = &self.options.scenes;
         let is_asked = |scene: &Standard| asked.is_empty() || asked.contains(scene);
         let scenes: Vec<_> = SCENES.iter().filter(|(_, scene, _)| is_asked(scene)).collect();
         self.progress.stage("making the scenes' textures");
         let stones = Stones::new();
-        self.progress.count((scenes.len() * (self.filters.len() + 1)) as u64);
-        let mut cases = Vec::new();
-        for &&(name, standard, _) in &scenes {
-            self.measure(name, &stones, standard, &mut cases)?;
+        let num_frames = (self.options.repeat as usize + 1) * self.filters.len() + 1;
+        self.progress.count((scenes.len() * num_frames) as u64);
+        let subject = |&&(name, standard, _): &&_| self.judged(name, standard, &stones);
+        let mut subjects: Vec<_> = scenes.iter().map(subject).collect::<Result<_, _>>()?;
+        for _ in 0..self.options.repeat {
+            subjects.iter_mut().try_for_each(|subject| self.time(subject))?;
         }
-        Ok(cases)
+        Ok(subjects.into_iter().flat_map(|subject| self.cases(subject)).collect())
     }
 
-    /// Measures all filters on a scene.
-    fn measure(
+    /// A scene with every filter held against the truth.
+    fn judged(
         &self,
-        name: &str,
-        stones: &Stones,
+        name: &'static str,
         standard: Standard,
-        cases: &mut Vec<Case>,
-    ) -> Result<(), Refusal> {
+        stones: &Stones,
+    ) -> Result<Subject, Refusal> {
         let Self { options, filters, progress } = self;
-        let settings = |filter, [width, height]: [u32; 2]| Settings {
-            width,
-            height,
-            filter,
-            msaa: 1,
-            cull_back_faces: true,
-            parallax: standard != Standard::Triangles,
-            ..Settings::default()
-        };
         progress.stage(format!("{name}: the truth"));
+        let settings = |filter| settings(standard, filter, options.truth_size);
         let truth = Filter::Truth(Rays { samples: options.truth_samples });
-        let mut renderer =
-            Renderer::new(stones.scene(standard), settings(truth, options.truth_size))?;
+        let mut renderer = Renderer::new(stones.scene(standard), settings(truth))?;
         let truth = Picture::from(&renderer.render());
         progress.step();
+        let mut found = Vec::new();
         for filter in filters {
-            progress.stage(format!("{name}: {}", word(filter)));
-            renderer.set_settings(settings(*filter, options.truth_size))?;
+            progress.stage(format!("{name}: quality of {}", word(filter)));
+            renderer.set_settings(settings(*filter))?;
             let psnr_db = compare(&truth, &Picture::from(&renderer.render()))?.psnr_db;
-            renderer.set_settings(settings(*filter, options.size))?;
-            let (_, took): (Frame<[u8; 4]>, _) = draw_repeated(&mut renderer, options.repeat);
-            cases.push(Case::new([name, word(filter)], &took, psnr_db));
+            found.push((psnr_db, Vec::new()));
             progress.step();
         }
+        Ok(Subject { name, standard, renderer, found })
+    }
+
+    /// Times a frame of every filter on a scene.
+    fn time(&self, subject: &mut Subject) -> Result<(), Refusal> {
+        for (filter, (_, took)) in self.filters.iter().zip(&mut subject.found) {
+            self.progress.stage(format!("{}: time of {}", subject.name, word(filter)));
+            let settings = settings(subject.standard, *filter, self.options.size);
+            subject.renderer.set_settings(settings)?;
+            let (_, one): (Frame<[u8; 4]>, _) = draw_repeated(&mut subject.renderer, 1);
+            took.extend(one);
+            self.progress.step();
+        }
         Ok(())
+    }
+
+    fn cases(&self, subject: Subject) -> Vec<Case> {
+        let found = self.filters.iter().zip(subject.found);
+        let case = |(filter, (psnr_db, mut took)): (&Filter, (f64, Vec<Took>))| {
+            timing::sort(&mut took);
+            Case::new([subject.name, word(filter)], &took, psnr_db)
+        };
+        found.map(case).collect()
+    }
+}
+
+/// How a scene is drawn: a sample a pixel, as graphics cards are measured.
+fn settings(standard: Standard, filter: Filter, [width, height]: [u32; 2]) -> Settings {
+    Settings {
+        width,
+        height,
+        filter,
+        msaa: 1,
+        cull_back_faces: true,
+        parallax: standard != Standard::Triangles,
+        ..Settings::default()
     }
 }
 
