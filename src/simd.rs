@@ -183,6 +183,18 @@ pub fn pick(run: u32x16, numbers: u32x16) -> u32x16 {
     }
 }
 
+/// Of the 64-bit words at eight places, the lower halves and then the upper ones.
+#[inline(always)]
+pub fn gather(words: &[u64], places: u32x8) -> u32x16 {
+    let found = places.as_array().map(|place| words[place as usize]);
+    if HAS_SHUFFLE {
+        let numbers = u32x16::new(std::array::from_fn(|lane| (lane % 8 * 2 + lane / 8) as u32));
+        pick(wide::bytemuck::cast(wide::u64x8::new(found)), numbers)
+    } else {
+        join_words([0, 32].map(|from| u32x8::new(found.map(|word| (word >> from) as u32))))
+    }
+}
+
 /// The lanes in the order of the given numbers, 0 to 7.
 #[inline(always)]
 pub fn permute(values: f32x8, numbers: [u32; 8]) -> f32x8 {

@@ -96,8 +96,10 @@ fn cases() -> Vec<Case> {
     let visible = Visible { texel_budget: 64, ..Visible::default() };
     let horizon = Horizon::default();
     let trilinear = Filter::Trilinear(Trilinear::default());
+    let ray = Filter::Parallax(Rays { samples: 1 });
     for (name, filter, narrow) in [
         ("Trilinear", trilinear, trilinear),
+        ("One ray", ray, ray),
         ("Ewa", Filter::Ewa(ewa), Filter::Ewa(Ewa { max_anisotropy: 4.0, ..ewa })),
         (
             "Visible",
@@ -140,7 +142,7 @@ fn cases() -> Vec<Case> {
     ));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, small(Filter::Horizon(horizon))));
     // Texels a side that are no power of two wrap by a division.
-    for (name, filter) in [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa))] {
+    for (name, filter) in [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa)), ("One ray", ray)] {
         cases.push((format!("{name}, 50 texels"), Wrap::Repeat, 50, small(filter)));
     }
     cases

@@ -9,13 +9,14 @@ use basrelief::filter::{
 };
 use basrelief::footprint::Ellipse;
 use basrelief::invariants::{self, Checked};
-use basrelief::reference::{Conic, Lines, RAY_TIE, mean, ray_margin, supersampled, texels};
+use basrelief::reference::{self, Conic, Lines, RAY_TIE, mean, ray_margin, supersampled, texels};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::{ColorImage, FULL, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Ewa, Filter, Formulas, Horizon, Visibility, Visible};
+use basrelief::{Ewa, Filter, Formulas, Horizon, Rays, Visibility, Visible};
 use common::{Random, cobbles, limited_filters, with_budget, with_limit};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use std::sync::Arc;
 
 /// The same cases on every run: what rounding decides must not fail one build in a thousand.
 fn cases(num: u32) -> ProptestConfig {
@@ -433,6 +434,36 @@ proptest! {
         let error = (0..3).map(|i| (f64::from(found[i]) - expected[i]).abs()).fold(0.0, f64::max);
         prop_assert!(error < HORIZON_ERROR, "{found:?} {expected:?} {error}");
     }
+}
+
+/// Parallax occlusion in lanes against one ray at a time, for maps of every kind.
+#[test]
+fn parallax_is_the_references() {
+    let mut random = Random(5);
+    let (mut num, mut num_apart) = (0, 0);
+    for seed in 0..300 {
+        let wrap = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp][seed as usize % 3];
+        // A power of two now and then: its cells are found by another rule.
+        let mut side = || if seed % 2 == 0 { 16 } else { random.within(1.0, 40.0) as u32 };
+        let surface = Arc::new(surface(maps(side(), side(), wrap, seed)));
+        let mut pair = |most: f32| [0; 2].map(|_| random.within(-most, most));
+        // Some groups of eight are on one level, others on many.
+        let reach = if seed % 5 == 0 { 0.001 } else { 0.3 };
+        let pixels: Vec<_> = (0..8)
+            .map(|_| Footprint::new(pair(3.0), pair(reach), pair(reach), pair(0.5)))
+            .collect();
+        let filter = Filter::Parallax(Rays { samples: 4 });
+        let found = Prepared::new(surface.clone()).colors(&filter, &pixels);
+        for (pixel, found) in pixels.iter().zip(found) {
+            let expected = reference::parallax(&surface, pixel, 4);
+            let error = (0..3).map(|c| (f64::from(found[c]) - expected[c]).abs());
+            num += 1;
+            num_apart += i32::from(error.fold(0.0, f64::max) > 1e-3);
+        }
+    }
+    // A ray that just touches the relief at a step may be taken to hit it or to pass.
+    println!("{num_apart} of {num} pixels are apart");
+    assert!(num_apart * 1000 < num, "{num_apart} of {num} pixels are apart");
 }
 
 /// How far the sweep may be from the reference on the same lines, of the range: the fitted integral

@@ -108,6 +108,22 @@ fn horizon_beats_the_visible_texels() {
 }
 
 #[test]
+fn quality_does_not_depend_on_the_size() {
+    let maps = SurfaceMaps { relief_depth: 0.06, ..cobbles(512, 8) };
+    let scene = floor_scene(Surface::new(maps).expect("valid maps"), 0.5);
+    for (width, height) in [(80, 45), (160, 90), (240, 135)] {
+        let draw = |filter| {
+            let settings = Settings { width, height, filter, msaa: 1, ..Settings::default() };
+            Renderer::new(scene.clone(), settings).expect("a valid scene").render()
+        };
+        let [horizon, truth] = [Filter::default(), truth(128)].map(draw);
+        let psnr = compare(&(&horizon).into(), &(&truth).into()).expect("one size").psnr_db;
+        println!("{width} x {height}: {psnr:.2} dB");
+        assert!(psnr > 47.0, "{width} x {height}: {psnr} dB");
+    }
+}
+
+#[test]
 fn many_rays_come_close_to_truth_and_few_do_not() {
     let [few, many] = [1, 16].map(|samples| psnr(settings(parallax(samples))));
     assert!(many > few + 6.0 && many > 30.0, "{few} and {many} dB");

@@ -5,12 +5,14 @@
 #![forbid(unsafe_code)]
 
 mod commands;
+mod machine;
 mod options;
 mod output;
 mod pictures;
 mod progress;
 mod refusal;
 mod stats;
+mod timing;
 #[cfg(feature = "viewer")]
 mod view;
 

@@ -27,6 +27,20 @@ impl Progress {
         self.bar.tick();
     }
 
+    /// Shows how much of so many steps is done, from now on.
+    pub(crate) fn count(&self, num: u64) {
+        self.bar.set_length(num);
+        if let Ok(style) = ProgressStyle::with_template("{bar:24} {pos} of {len}, {msg} {elapsed}")
+        {
+            self.bar.set_style(style);
+        }
+    }
+
+    /// One of the steps is done.
+    pub(crate) fn step(&self) {
+        self.bar.inc(1);
+    }
+
     /// Tells the user something, unless quiet.
     pub(crate) fn say(&self, text: &str) {
         if !self.is_quiet {

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use crate::options::choices::word;
 use crate::refusal::Refusal;
+use crate::timing::{self, Took};
 
 /// One JSON object; of several pictures in a row where `--json` prints one a line. Times are in
 /// milliseconds; those of a frame belong to the frame of the middle time.
@@ -58,14 +59,13 @@ impl Report {
     /// The figures of the frame of the middle time (of an even number, the faster of the middle
     /// two).
     pub(crate) fn new(
-        mut frames: Vec<(f64, Stats)>,
+        mut frames: Vec<Took>,
         load_ms: f64,
         threads: usize,
         settings: &Settings,
     ) -> Self {
-        frames.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let middle = frames.len().saturating_sub(1) / 2;
-        let (frame_ms, stats) = frames.into_iter().nth(middle).unwrap_or_default();
+        timing::sort(&mut frames);
+        let (frame_ms, stats) = timing::middle(&frames);
         Self {
             frame_ms,
             load_ms,

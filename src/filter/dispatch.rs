@@ -21,8 +21,8 @@ impl Filter {
     /// The means of a batch's covered pixels, into `out`, which has a vector for each of the
     /// batch's.
     ///
-    /// A pixel of [`Self::Parallax`] and [`Self::Truth`] is the mean over [samples](Self::samples)
-    /// of it; each sample is a footprint of its own here.
+    /// A pixel of [`Self::Truth`], and of [`Self::Parallax`] with more than one ray, is the mean
+    /// over [samples](Self::samples) of it; each sample is a footprint of its own here.
     pub fn colors(
         &self,
         prepared: &Prepared,
@@ -56,9 +56,7 @@ impl Filter {
                 horizon::colors(prepared, batch, horizon, &mut scratch.horizon, out)
             }
             Self::Parallax(Rays { samples }) => {
-                each_covered(batch, out, |pixels, lane| {
-                    parallax::trace(surface, &pixels.lane(lane), *samples)
-                });
+                parallax::colors(prepared, batch, *samples, out);
                 Work::default()
             }
             Self::Truth(_) => {
@@ -114,11 +112,8 @@ impl Filter {
                 horizon::levels(prepared, (pixels, is_lit), horizon, &mut scratch.horizon)
             }
             Self::Parallax(Rays { samples }) => each(&|pixels, lane| {
-                blended(levels::of_size(levels::parallax_size(
-                    surface.base(),
-                    &pixels.lane(lane),
-                    *samples,
-                )))
+                let sizes = levels::parallax_sizes(surface.base(), pixels, *samples);
+                blended(levels::of_size(sizes.as_array()[lane]))
             }),
         }
     }
@@ -131,6 +126,8 @@ impl Filter {
     /// Where the rays of a pixel go; `None` for a filter that takes a footprint for a pixel.
     pub fn samples(&self) -> Option<SampleOffsets> {
         match self {
+            // One ray goes through the pixel's centre, as the footprint does.
+            Self::Parallax(Rays { samples: 1 }) => None,
             Self::Parallax(Rays { samples }) => {
                 Some(SampleOffsets::new(&parallax::offsets(*samples), false))
             }

@@ -2,7 +2,7 @@
 
 use super::far_field::FarField;
 use crate::footprint::Footprint;
-use crate::relief::{HeightField, LevelLoss, displacement, march};
+use crate::relief::{HeightCells, HeightField, LevelLoss, displacement, march};
 use crate::settings::Filter;
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
@@ -22,6 +22,7 @@ pub struct Prepared {
 #[derive(Debug)]
 struct Relief {
     field: OnceLock<HeightField>,
+    cells: OnceLock<HeightCells>,
     loss: LevelLoss,
     /// The tables, if the surface has any, for so many MiB.
     far: Mutex<Option<(u32, Option<Arc<FarField>>)>>,
@@ -34,6 +35,7 @@ impl Prepared {
         let relief = (surface.relief_depth() > 0.0).then(|| {
             Arc::new(Relief {
                 field: OnceLock::new(),
+                cells: OnceLock::new(),
                 loss: LevelLoss::new(&surface),
                 far: Mutex::default(),
             })
@@ -63,13 +65,13 @@ impl Prepared {
                     self.far_field(horizon.far_field_mib);
                 }
             }
+            Filter::Parallax(_) => drop(self.cells()),
             Filter::Horizon(_)
             | Filter::Nearest
             | Filter::Bilinear
             | Filter::Trilinear(_)
             | Filter::Ewa(_)
             | Filter::Visible(_)
-            | Filter::Parallax(_)
             | Filter::Truth(_) => {}
         }
     }
@@ -102,6 +104,12 @@ impl Prepared {
     pub fn field(&self) -> Option<&HeightField> {
         let relief = self.relief.as_deref()?;
         Some(relief.field.get_or_init(|| HeightField::new(&self.surface)))
+    }
+
+    /// The heights of all levels in cells; `None` where the surface is flat.
+    pub(super) fn cells(&self) -> Option<&HeightCells> {
+        let relief = self.relief.as_deref()?;
+        Some(relief.cells.get_or_init(|| HeightCells::new(&self.surface)))
     }
 
     /// What levels lose in occlusion; `None` where the surface is flat.

@@ -9,55 +9,80 @@
 //! groups    [0 9 10 _ _ _ _ _]                  [16 17 18 ... 23]     numbers: 8 * pair + lane
 //! ```
 
-use super::batch::Filtered;
+use super::batch::{Batch, Filtered};
+use crate::footprint::Footprints;
 use crate::simd::PixelLanes;
 
 /// Most groups that are looked up at once: their steps overlap, and eight fit the first cache with
 /// the texels they read.
-const AT_ONCE: usize = 8;
+pub(super) const AT_ONCE: usize = 8;
 
-/// What the look-ups need to know of eight pixels: u, v and the footprint's size.
-type Group = [PixelLanes; 3];
+/// Looks up the colours of a batch's pixels in groups of eight. `of_pixels` says what a look-up
+/// needs to know of eight pixels, such as u, v and the footprint's size; `look_up` hands out the
+/// colours of a queue's groups.
+#[inline(always)]
+pub(super) fn look_up_all<const N: usize>(
+    batch: &Batch,
+    out: &mut [Filtered],
+    of_pixels: impl Fn(&Footprints) -> [PixelLanes; N],
+    look_up: impl Fn(&Queue<N>, &mut [Filtered]),
+) {
+    let mut pixels = batch.pixels.iter().enumerate();
+    let mut queue = Queue::new();
+    loop {
+        // Line up covered pixels until as many wait as are looked up at once.
+        while let Some((index, pixels)) = if queue.is_full() { None } else { pixels.next() } {
+            queue.push(pixels.covered, index, of_pixels(pixels));
+        }
+        if queue.is_empty() {
+            return;
+        }
+        // Look up the whole groups; one that is not waits for more, unless it is all that is left.
+        queue.fill_up();
+        look_up(&queue, out);
+        queue.advance();
+    }
+}
 
 /// The pixels, group after group.
-pub(super) struct Queue {
-    groups: [Group; AT_ONCE + 1],
+pub(super) struct Queue<const N: usize> {
+    groups: [[PixelLanes; N]; AT_ONCE + 1],
     /// Of each pixel, the number of the pair times 8 plus the lane.
     pixels: [[u32; 8]; AT_ONCE + 1],
     num: usize,
 }
 
-impl Queue {
+impl<const N: usize> Queue<N> {
     /// An empty queue.
-    pub(super) fn new() -> Self {
-        Self { groups: [[PixelLanes::ZERO; 3]; AT_ONCE + 1], pixels: Default::default(), num: 0 }
+    fn new() -> Self {
+        Self { groups: [[PixelLanes::ZERO; N]; AT_ONCE + 1], pixels: Default::default(), num: 0 }
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    fn is_empty(&self) -> bool {
         self.num == 0
     }
 
     /// Whether there are as many as are looked up at once.
-    pub(super) fn is_full(&self) -> bool {
+    fn is_full(&self) -> bool {
         self.num >= 8 * AT_ONCE
     }
 
     /// Lines up the covered pixels of a pair.
     #[inline(always)]
-    pub(super) fn push(&mut self, covered: u8, index: usize, [u, v, size]: Group) {
+    fn push(&mut self, covered: u8, index: usize, group: [PixelLanes; N]) {
         if self.num.is_multiple_of(8) && covered == u8::MAX {
             // A whole pair at a group's beginning stays as it is: no lane is moved.
             let numbers = std::array::from_fn(|lane| (8 * index + lane) as u32);
-            (self.groups[self.num / 8], self.pixels[self.num / 8]) = ([u, v, size], numbers);
+            (self.groups[self.num / 8], self.pixels[self.num / 8]) = (group, numbers);
             self.num += 8;
         } else {
             // A copy for the call: what is passed by its address is kept in memory.
-            self.push_covered(covered, index, &[u, v, size]);
+            self.push_covered(covered, index, &group.map(|lanes| lanes));
         }
     }
 
     #[inline(never)]
-    fn push_covered(&mut self, mut covered: u8, index: usize, group: &Group) {
+    fn push_covered(&mut self, mut covered: u8, index: usize, group: &[PixelLanes; N]) {
         while covered != 0 {
             let lane = covered.trailing_zeros() as usize;
             covered &= covered - 1;
@@ -73,7 +98,7 @@ impl Queue {
 
     /// Fills the empty lanes of a lone group with copies of its first pixel, so that they read
     /// texels that are needed anyway.
-    pub(super) fn fill_up(&mut self) {
+    fn fill_up(&mut self) {
         if self.num < 8 {
             for lanes in &mut self.groups[0] {
                 let first = lanes.as_array()[0];
@@ -83,7 +108,7 @@ impl Queue {
     }
 
     /// The groups that are whole, or the last one.
-    pub(super) fn groups(&self) -> &[Group] {
+    pub(super) fn groups(&self) -> &[[PixelLanes; N]] {
         &self.groups[..self.num_whole()]
     }
 
@@ -106,7 +131,7 @@ impl Queue {
     }
 
     /// Leaves out the groups that were handed out.
-    pub(super) fn advance(&mut self) {
+    fn advance(&mut self) {
         let num_groups = self.num_whole();
         (self.groups[0], self.pixels[0]) = (self.groups[num_groups], self.pixels[num_groups]);
         self.num = self.num.saturating_sub(8 * num_groups);

@@ -6,7 +6,8 @@
 use super::batch::{Batch, Filtered, each_covered};
 use super::corners::{Corners, corners};
 use super::points;
-use super::queue::Queue;
+use super::queue;
+use crate::footprint::Footprints;
 use crate::footprint::levels::{longest_sides, of_sizes};
 use crate::simd::{
     LineLanes, PixelLanes, high_halves, i32x8, join, lanes, low_halves, split, u32x16,
@@ -39,22 +40,13 @@ pub(super) fn colors(surface: &Surface, batch: &Batch, out: &mut [Filtered]) {
             points::trilinear(surface, pixels.lane(lane).hit, size)
         });
     }
-    let mut pixels = batch.pixels.iter().enumerate();
-    let mut queue = Queue::new();
-    loop {
-        // Line up covered pixels until as many wait as are looked up at once.
-        while let Some((index, pixels)) = if queue.is_full() { None } else { pixels.next() } {
-            let [u, v] = pixels.hit;
-            queue.push(pixels.covered, index, [u, v, longest_sides(surface.base(), pixels)]);
-        }
-        if queue.is_empty() {
-            return;
-        }
-        // Look up the whole groups; one that is not waits for more, unless it is all that is left.
-        queue.fill_up();
+    let places = |pixels: &Footprints| {
+        let [u, v] = pixels.hit;
+        [u, v, longest_sides(surface.base(), pixels)]
+    };
+    queue::look_up_all(batch, out, places, |queue, out| {
         look_up(surface, queue.groups(), |group, found| queue.hand_out(group, found, out));
-        queue.advance();
-    }
+    });
 }
 
 /// The mean colours of groups of eight pixels: their places (u and v in repeats, within 1e6) and

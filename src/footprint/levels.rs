@@ -4,7 +4,7 @@
 //! |---|---|---|---|
 //! | [`of_size`], [`of_sizes`] | `trilinear`, `parallax` | the two whose texels are next to a length, blended | four texels, whatever the level: only blur against aliasing counts |
 //! | [`longest_sides`] | `trilinear` | that length: the footprint's longer derivative | never aliases |
-//! | [`parallax_size`] | `parallax` | that length: the shorter derivative, a sixteenth of the longer at least, less for many samples | as graphics cards do it |
+//! | [`parallax_sizes`] | `parallax` | that length: the shorter derivative, a sixteenth of the longer at least, less for many samples | as graphics cards do it |
 //! | [`within_budget`] | `visible`, `ewa` by the letter | the finest whose ellipse holds at most so many texels | a test, or a ray, a texel |
 //! | [`for_gaussian`] | `ewa` of every texel | as coarse as samples the Gaussian well, and within the budget | a weight a texel |
 //! | [`for_lines`] | `ewa` along its axis | as coarse as the shorter axis allows, so that two or three rows hold the ellipse | a run of texels a row |
@@ -83,19 +83,26 @@ pub fn of_sizes(size: PixelLanes, last: usize) -> (i32x8, PixelLanes) {
 /// The longer derivatives of eight footprints in texels of the base level.
 #[inline]
 pub fn longest_sides(base: &Level, pixels: &Footprints) -> PixelLanes {
-    let texels = base.texels_per_repeat();
-    let squared = |[u, v]: [PixelLanes; 2]| {
-        let (u, v) = (u * texels[0], v * texels[1]);
-        u * u + v * v
-    };
-    squared(pixels.dx).fast_max(squared(pixels.dy)).sqrt()
+    let [x, y] = squared_sides(base, pixels);
+    x.fast_max(y).sqrt()
 }
 
-/// Base texels per texel of the level that common practice takes with so many samples a pixel.
-pub fn parallax_size(base: &Level, footprint: &Footprint, num_samples: u32) -> f32 {
-    let length = |d: [f32; 2]| base.in_texels(d).map(|c| c.powi(2)).into_iter().sum::<f32>().sqrt();
-    let (x, y) = (length(footprint.dx), length(footprint.dy));
-    x.min(y).max(x.max(y) / PARALLAX_ANISOTROPY) / (num_samples as f32).sqrt()
+/// Base texels per texel of the levels that common practice takes with so many samples a pixel.
+#[inline]
+pub fn parallax_sizes(base: &Level, pixels: &Footprints, num_samples: u32) -> PixelLanes {
+    let [x, y] = squared_sides(base, pixels);
+    let least = x.fast_max(y) * (1.0 / (PARALLAX_ANISOTROPY * PARALLAX_ANISOTROPY));
+    (x.fast_min(y).fast_max(least) * (1.0 / num_samples as f32)).sqrt()
+}
+
+/// The squared derivatives of eight footprints along x and y, in texels of the base level.
+#[inline(always)]
+fn squared_sides(base: &Level, pixels: &Footprints) -> [PixelLanes; 2] {
+    let texels = base.texels_per_repeat();
+    [pixels.dx, pixels.dy].map(|[u, v]| {
+        let (u, v) = (u * texels[0], v * texels[1]);
+        u * u + v * v
+    })
 }
 
 /// What the ellipses of the paper's method are bounded by.

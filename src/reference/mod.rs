@@ -6,12 +6,14 @@
 //!   leaves visible, and the weighted mean of a set.
 //! * `Lines`: the floating horizon line by line, with the weight of every texel.
 //! * `first_hit`, `supersampled`: a dense march, and the value of a pixel by many rays.
+//! * `parallax`: common practice, a ray in 32 steps.
 //!
 //! Short and slow on purpose. Shares with the kernels the packed texels, the ellipse's definition,
 //! and nothing else.
 
 mod formulas;
 mod horizon;
+mod parallax;
 mod stored;
 mod supersample;
 mod texels;
@@ -20,5 +22,6 @@ pub(crate) use stored::color;
 
 pub use formulas::{Conic, derivatives};
 pub use horizon::Lines;
+pub use parallax::parallax;
 pub use supersample::{Ray, first_hit, supersampled};
 pub use texels::{RAY_TIE, mean, ray_margin, texels};

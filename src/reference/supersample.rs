@@ -73,7 +73,7 @@ pub fn supersampled(surface: &Surface, footprint: &Footprint, side: i32) -> [f64
 }
 
 /// Bilinear between the four texels around a place in texels, whose centres lie at halves.
-fn bilinear(place: [f64; 2], value: impl Fn([i32; 2]) -> f64) -> f64 {
+pub(super) fn bilinear(place: [f64; 2], value: impl Fn([i32; 2]) -> f64) -> f64 {
     let [u, v] = place.map(|p| p - 0.5);
     let ([x, y], fx, fy) = ([u, v].map(|p| p.floor() as i32), u - u.floor(), v - v.floor());
     let row = |y: i32| value([x, y]) + (value([x + 1, y]) - value([x, y])) * fx;

@@ -9,12 +9,14 @@
 
 pub mod directions;
 mod displacement;
+mod height_cells;
 mod height_field;
 mod level_loss;
 mod march;
 pub mod seen;
 
 pub use displacement::{MAX_SLOPE, displacement, finite};
+pub use height_cells::{CellRays, HeightCells};
 pub use height_field::HeightField;
 pub use level_loss::LevelLoss;
 pub use march::march;

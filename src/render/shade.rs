@@ -2,7 +2,7 @@
 
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Scratch, Work};
-use crate::footprint::Footprints;
+use crate::footprint::{Footprint, Footprints};
 use crate::light::{LocalLights, SurfacePoint};
 use crate::raster::{AttributePlanes, LitPlanes, Plane, Pool, QuadBlock, QuadPair};
 use crate::scene::{Material, Scene};
@@ -16,6 +16,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Most pairs of quads whose footprints are made at once: they stay in the first cache, and are a
 /// whole number of the horizon's patches.
 const PAIRS_AT_ONCE: usize = 64;
+
+/// Groups of eight samples whose rays are filtered at once, for each pixel of a pair: as many
+/// footprints as those of pairs.
+const GROUPS_AT_ONCE: usize = PAIRS_AT_ONCE / 8;
 
 type Colors = Vec<[PixelLanes; 3]>;
 
@@ -167,53 +171,78 @@ impl<'a> Shader<'a> {
         samples: &SampleOffsets,
         scratch: &mut ShadeScratch,
     ) -> [PixelLanes; 3] {
-        let field = ground.prepared.field();
+        let (mut sums, mut nums) = ([Vec3::ZERO; 8], [0.0; 8]);
+        for groups in samples.groups.chunks(GROUPS_AT_ONCE) {
+            self.cast(ground, pair, (groups, samples.is_lit_apart), scratch);
+            let ShadeScratch { filter, footprints, lights, filtered } = &mut *scratch;
+            filtered.resize(footprints.len(), Filtered::default());
+            let batch = Batch { pixels: footprints, lights, is_alone: false };
+            self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
+            // Sum up what the samples see, one by one in their order, so that the bits are always
+            // equal.
+            let mut lights = lights.iter();
+            let mut found = footprints.iter().zip(filtered.iter());
+            for lane in pair.covered() {
+                for (rays, filtered) in found.by_ref().take(groups.len()) {
+                    for i in rays.covered() {
+                        sums[lane] += self.lit(ground, &filtered.lane(i), lights.next());
+                        nums[lane] += 1.0;
+                    }
+                }
+            }
+        }
+        // A pixel none of whose rays meets the surface is black and not NaN.
+        in_lanes(&std::array::from_fn(|lane| sums[lane] / f32::max(nums[lane], 1.0)))
+    }
+
+    /// The rays of groups of samples and, under lights, what shines on each: of one covered pixel
+    /// of a pair after the other. Lights are those where a ray lies on the screen, or where its
+    /// pixel's centre does.
+    fn cast(
+        &self,
+        ground: &Ground,
+        pair: &QuadPair,
+        (groups, is_lit_apart): (&[([PixelLanes; 2], usize)], bool),
+        scratch: &mut ShadeScratch,
+    ) {
+        let ShadeScratch { footprints, lights, .. } = scratch;
+        footprints.clear();
+        lights.clear();
         let none = [PixelLanes::ZERO; 3];
         // All samples share their pixel's derivatives, those of the flat polygon.
         let pixels =
             Footprints::of_quads(&pair.uv, &none, None, &FootprintRule::FLAT, pair.covered_bits());
-        let mut colors = [Vec3::ZERO; 8];
         for lane in pair.covered() {
-            let planes = pair.planes[lane / 4];
             let [center_x, center_y] = pixel_center(pair, lane);
-            // Sum up what the samples see, one by one in their order, so that the bits are always
-            // equal.
-            let (mut sum, mut num) = (Vec3::ZERO, 0.0);
-            for &([dx, dy], num_samples) in &samples.groups {
+            for &([dx, dy], num_samples) in groups {
                 let (x, y) = (dx + center_x, dy + center_y);
-                // Beyond the horizon there is no surface to sample.
-                let is_before =
-                    eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
-                // The last group may hold fewer than eight samples.
-                let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
-                let (uv, view) = planes.at(x, y);
-                let rays = Footprints::of_samples(
-                    (&uv, &view),
-                    field,
-                    self.rule.is_traced,
-                    &pixels.lane(lane),
-                    covered,
-                );
-                let mut filtered = [Filtered::default()];
-                let batch = Batch { pixels: &[rays], lights: &[], is_alone: false };
-                self.count(self.settings.filter.colors(
-                    ground.prepared,
-                    &batch,
-                    &mut scratch.filter,
-                    &mut filtered,
-                ));
-                for i in rays.covered() {
+                let planes = pair.planes[lane / 4];
+                let rays = self.rays(ground, planes, ([x, y], num_samples), &pixels.lane(lane));
+                lights.extend(rays.covered().filter_map(|i| {
                     let own = [x.as_array()[i], y.as_array()[i]];
-                    let place = if samples.is_lit_apart { own } else { [center_x, center_y] };
-                    let lights = self.lights_at(pair, lane, place);
-                    sum += self.lit(ground, &filtered[0].lane(i), lights.as_ref());
-                    num += 1.0;
-                }
+                    let place = if is_lit_apart { own } else { [center_x, center_y] };
+                    self.lights_at(pair, lane, place)
+                }));
+                footprints.push(rays);
             }
-            // A pixel none of whose rays meets the surface is black and not NaN.
-            colors[lane] = sum / f32::max(num, 1.0);
         }
-        in_lanes(&colors)
+    }
+
+    /// The rays of up to eight samples of a pixel through places on the screen.
+    fn rays(
+        &self,
+        ground: &Ground,
+        planes: &AttributePlanes,
+        ([x, y], num_samples): ([PixelLanes; 2], usize),
+        pixel: &Footprint,
+    ) -> Footprints {
+        // Beyond the horizon there is no surface to sample.
+        let is_before = eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
+        // The last group may hold fewer than eight samples.
+        let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
+        let (uv, view) = planes.at(x, y);
+        let field = ground.prepared.field();
+        Footprints::of_samples((&uv, &view), field, self.rule.is_traced, pixel, covered)
     }
 
     fn is_lit(&self) -> bool {

@@ -1,5 +1,6 @@
 //! One file for each subcommand.
 
+mod bench;
 mod compare;
 mod golden;
 mod inspect;
@@ -25,6 +26,7 @@ pub(crate) fn run(cli: Cli) -> Result<ExitCode, Refusal> {
         Command::Man { output } => manual::man(output.as_deref()),
         Command::Inspect(options) => inspect::run(options),
         Command::Study(options) => study::run(options),
+        Command::Bench(options) => bench::run(&options),
         #[cfg(feature = "viewer")]
         Command::View(options) => view::run(options),
         #[cfg(not(feature = "viewer"))]

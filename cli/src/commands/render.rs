@@ -6,10 +6,11 @@ use crate::options::render::RenderOptions;
 use crate::options::scene_file;
 use crate::options::threads::thread_pool;
 use crate::output;
-use crate::pictures::picture::{self, Took, Way};
+use crate::pictures::picture::{self, Way};
 use crate::progress::Progress;
 use crate::refusal::Refusal;
 use crate::stats::Report;
+use crate::timing::{Took, milliseconds};
 use basrelief::{Lighting, Renderer, Settings};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -85,7 +86,7 @@ impl Job<'_> {
     fn run(&self) -> Result<(), Refusal> {
         let start = Instant::now();
         let mut renderer = self.prepare()?;
-        let load_ms = start.elapsed().as_secs_f64() * 1e3;
+        let load_ms = milliseconds(start);
         let report =
             |took| Report::new(took, load_ms, rayon::current_num_threads(), &self.settings);
         let took = self.draw_all(&mut renderer, &report)?;

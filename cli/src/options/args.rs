@@ -1,5 +1,6 @@
 //! The command line as a whole. The options of each subcommand stand in a file of its name.
 
+use crate::options::bench::BenchOptions;
 use crate::options::compare::CompareOptions;
 use crate::options::inspect::InspectOptions;
 use crate::options::join::JoinOptions;
@@ -61,6 +62,13 @@ pub(crate) enum Command {
     /// Compare all filters on a scene with the truth: time, quality, pictures and charts on one
     /// page
     Study(StudyOptions),
+    /// Measure how fast and how good every filter is on the standard scenes
+    ///
+    /// The scenes are made at start, the same on every machine: a floor, a steep wall, a curved
+    /// body and a million triangles. Prints a table: the middle time of a frame, pixels and
+    /// triangles a second, and decibels against the truth of a smaller picture. With --against,
+    /// compares with an earlier run and says which differences are within noise.
+    Bench(BenchOptions),
     /// Look around a scene in a window
     #[cfg(feature = "viewer")]
     #[command(after_help = viewer::KEYS)]

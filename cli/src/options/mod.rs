@@ -2,6 +2,7 @@
 //! them.
 
 pub(crate) mod args;
+pub(crate) mod bench;
 pub(crate) mod choices;
 pub(crate) mod compare;
 pub(crate) mod filter;

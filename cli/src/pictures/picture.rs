@@ -2,12 +2,12 @@
 
 use crate::progress::Progress;
 use crate::refusal::Refusal;
+use crate::timing::{Took, draw_timed};
 use crate::{output, stats};
 use basrelief::frame::{Format, Part, PngHead, write_png};
-use basrelief::{DrawnPixel, Frame, Region, Renderer, Settings, Stats};
+use basrelief::{DrawnPixel, Frame, Region, Renderer, Settings};
 use std::io::BufWriter;
 use std::path::Path;
-use std::time::Instant;
 
 /// Pixels of a picture from which on it is drawn in bands: 64 MiB as a frame, 256 MiB in linear
 /// light.
@@ -16,9 +16,6 @@ const LARGE: u64 = 1 << 24;
 const BAND: u32 = 1 << 22;
 /// Most pixels of a picture that is drawn whole: 1 GiB as a frame, 4 GiB in linear light.
 const MAX_WHOLE: u64 = 1 << 28;
-
-/// What drawing took, in milliseconds and in all.
-pub(crate) type Took = (f64, Stats);
 
 /// The settings that the renderer of a picture is made with: of one that is drawn in bands, those
 /// of the first.
@@ -109,13 +106,6 @@ fn draw_whole<P: DrawnPixel>(
     Ok((took, bytes))
 }
 
-/// Draws the renderer's frame in memory, that of `frame` where it has the size.
-fn draw_timed<P: DrawnPixel>(renderer: &mut Renderer, frame: &mut Frame<P>) -> Took {
-    let start = Instant::now();
-    let stats = renderer.render_timed(frame, &|| milliseconds(start));
-    (milliseconds(start), stats)
-}
-
 /// What the picture of `settings` is a part of, if it is.
 fn part(settings: &Settings) -> Option<Part> {
     settings.region.map(|region| Part { region, whole: [settings.width, settings.height] })
@@ -149,10 +139,6 @@ fn draw_bands(
         write_png(sink, &head, bands).map_err(|e| Refusal::file(path, Refusal::from(e)))
     })?;
     Ok(took)
-}
-
-fn milliseconds(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64() * 1e3
 }
 
 #[cfg(test)]

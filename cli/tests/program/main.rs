@@ -1,5 +1,6 @@
 //! Runs the program as its users do: one test program for all, so that it is linked once.
 
+mod bench;
 mod chromium;
 mod command_line;
 mod folder;

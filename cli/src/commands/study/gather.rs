@@ -1,10 +1,11 @@
 //! Draws and measures the trials.
 
 use crate::commands::study::crops::{self, Crop};
-use crate::commands::study::machine::Machine;
 use crate::commands::study::trials::Trial;
+use crate::machine::Machine;
 use crate::progress::Progress;
 use crate::refusal::Refusal;
+use crate::timing::{draw_repeated, middle, milliseconds};
 use basrelief::frame::Format;
 use basrelief::metrics::{PIXELS_PER_DEGREE, Picture, compare, errors_as_colors, flip, heat_map};
 use basrelief::{Filter, Frame, Rays, Renderer, Scene, Settings};
@@ -73,7 +74,8 @@ pub(crate) fn run(
         let start = Instant::now();
         renderer.set_settings(with(trial.filter))?;
         tables_ms = tables_ms.max(milliseconds(start));
-        let (frame, ms) = draw(&mut renderer, plan.repeat);
+        let (frame, took) = draw_repeated(&mut renderer, plan.repeat);
+        let (frame, ms) = (over_black(frame), middle(&took).0);
         outcomes.push(measured(trial, ms, &frame, &truth_picture)?);
         frames.push(frame);
     }
@@ -88,20 +90,6 @@ pub(crate) fn run(
         truth_png: png(&truth)?,
         crops: crops::choose(&truth, &frames)?,
     })
-}
-
-/// Draws once to warm up and then `repeat` times. The frame, and the middle time.
-fn draw(renderer: &mut Renderer, repeat: u32) -> (Frame, f64) {
-    let mut frame = renderer.render();
-    let mut times: Vec<f64> = (0..repeat)
-        .map(|_| {
-            let start = Instant::now();
-            renderer.render_into(&mut frame);
-            milliseconds(start)
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    (over_black(frame), times[(times.len() - 1) / 2])
 }
 
 fn measured(
@@ -133,10 +121,6 @@ fn over_black(mut frame: Frame) -> Frame {
 
 fn png(frame: &Frame) -> Result<Vec<u8>, basrelief::Error> {
     frame.encode(Format::Png)
-}
-
-fn milliseconds(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64() * 1e3
 }
 
 impl Study {

@@ -4,7 +4,6 @@ mod chart;
 mod crops;
 mod csv;
 mod gather;
-mod machine;
 mod page;
 mod trials;
 
