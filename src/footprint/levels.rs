@@ -15,7 +15,7 @@
 //! one's.
 
 use super::{Ellipse, Ellipses, Footprint, Footprints};
-use crate::settings::{Ewa, Formulas, RECONSTRUCTION};
+use crate::settings::{Ewa, Formulas, Horizon, RECONSTRUCTION};
 use crate::simd::{PixelLanes, i32x8, lanes, mask};
 use crate::texture::{Level, Surface};
 use std::f32::consts::FRAC_1_PI;
@@ -23,6 +23,11 @@ use std::f32::consts::FRAC_1_PI;
 /// Most texels of an ellipse, whatever the budget: larger ones take a coarser level, so that a
 /// pixel's time is bounded.
 pub const MAX_TEXELS: f32 = (1 << 20) as f32;
+
+/// Texels across a footprint at the most, for each that the settings ask for: a finer level pays
+/// better than more lines. Measured, 400x225, floor with shaded colours: 1 gives 38.9 dB, 2 gives
+/// 46.0 in half as much time again.
+const SWEEP_TEXELS: f32 = 2.0;
 
 /// Most rows of a pixel's sweep; a longer one takes a coarser level. Bounds the time of a pixel for
 /// any input. Measured: with 512 the wall loses 0.4 dB, and thin high ridges 8 dB.
@@ -205,11 +210,11 @@ pub struct SweepExtent {
     pub depth: f32,
 }
 
-/// The finest level on which a sweep is at most so many texels across, and short enough. What the
-/// level loses in occlusion the caller has taken into account: each level finer doubles
-/// `most_across`.
-pub fn for_sweep(surface: &Surface, extent: &SweepExtent, most_across: f32) -> usize {
+/// The finest level on which a sweep is at most twice `lines` texels across, and short enough. What
+/// the level loses in occlusion the caller has taken into account: each level finer doubles `lines`.
+pub fn for_sweep(surface: &Surface, extent: &SweepExtent, lines: u32) -> usize {
     let base = surface.base().texels_per_repeat();
+    let most_across = SWEEP_TEXELS * lines as f32;
     let fits = |level: &usize| {
         let texels = surface.levels()[*level].texels_per_repeat();
         // Sides may halve unevenly: the one with more texels counts.
@@ -218,6 +223,18 @@ pub fn for_sweep(surface: &Surface, extent: &SweepExtent, most_across: f32) -> u
     };
     let last = surface.last_level();
     (0..last).find(fits).unwrap_or(last)
+}
+
+/// How many times too long the sweeps of eight pixels would be on the levels that their widths ask
+/// for.
+pub fn rows_in_excess(surface: &Surface, pixels: &Footprints, horizon: &Horizon) -> PixelLanes {
+    let base = surface.base().texels_per_repeat();
+    let ellipses = Ellipses::new(pixels, base, horizon.max_anisotropy);
+    let [du, dv] = [0, 1].map(|i| pixels.displacement[i].abs() * base[i]);
+    let rows = ellipses.long.sqrt() * 2.0 + du.fast_max(dv);
+    let most_across = SWEEP_TEXELS * horizon.lines as f32;
+    let size = (ellipses.short.sqrt() * (2.0 / most_across)).fast_max(PixelLanes::ONE);
+    rows / (size * MAX_ROWS)
 }
 
 /// The finest level, from the tables' first on, on which a footprint is at most so many texels

@@ -2,8 +2,9 @@
 
 use super::encode::{FarImage, UNITS, decode};
 use super::tables::FarField;
-use crate::footprint::levels::for_tables;
+use crate::footprint::levels::{for_tables, rows_in_excess};
 use crate::footprint::{Ellipse, Ellipses, Footprint, Footprints, RowQuadric};
+use crate::settings::Horizon;
 use crate::simd::{PixelLanes, TexelLanes, exp_negative, lane_columns, sum, u32x8};
 use crate::texture::{FULL_F32, Surface, Texel};
 
@@ -22,10 +23,14 @@ impl FarField {
         &self,
         surface: &Surface,
         pixels: &Footprints,
-        max_anisotropy: f32,
+        horizon: &Horizon,
     ) -> PixelLanes {
         let texels = surface.levels()[self.first_level].texels_per_repeat();
-        let across = Ellipses::new(pixels, texels, max_anisotropy).short.sqrt() * 2.0;
+        let across = Ellipses::new(pixels, texels, horizon.max_anisotropy).short.sqrt() * 2.0;
+        // Where sweeps would be too long and take a coarser level, tables begin earlier, by the
+        // square of it: on a tiled facade at 1280x720 45.7 dB without the square, 37.0 without all.
+        let excess = rows_in_excess(surface, pixels, horizon).fast_max(PixelLanes::ONE);
+        let across = across * excess * excess;
         let share = (across - HAND_OVER) / (HAND_OVER * (HAND_OVER_END - 1.0));
         share.fast_max(PixelLanes::ZERO).fast_min(PixelLanes::ONE)
     }

@@ -160,7 +160,7 @@ fn share_out(
     shares.clear();
     near.clear();
     for (vector, pixels) in pixels.iter().enumerate() {
-        let of_far = |far: &FarField| far.shares(surface, pixels, horizon.max_anisotropy);
+        let of_far = |far: &FarField| far.shares(surface, pixels, horizon);
         let of_far = far.map_or(PixelLanes::ZERO, of_far).to_array();
         near.extend(
             pixels
