@@ -11,6 +11,9 @@ pub use wide::{f32x8, f32x16, f64x8, i32x8, i32x16, u32x8, u32x16};
 /// Eight pixels: two 2x2 quads, lane `4 * quad + 2 * dy + dx`.
 pub type PixelLanes = f32x8;
 
+/// Sixteen view rays.
+pub type RayLanes = f32x16;
+
 /// The name of the instruction set that the lanes were built for.
 pub const LEVEL: &str = if cfg!(target_feature = "avx512f") {
     "avx512"
@@ -64,6 +67,16 @@ pub fn set_bits(mut left: u8) -> impl Iterator<Item = usize> {
         let lane = left.trailing_zeros() as usize;
         left &= left.wrapping_sub(1);
         (lane < 8).then_some(lane)
+    })
+}
+
+/// The lanes of sixteen whose bit is set, in order.
+#[inline(always)]
+pub fn set_bits_of(mut left: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = left.trailing_zeros() as usize;
+        left &= left.wrapping_sub(1);
+        (lane < 32).then_some(lane)
     })
 }
 
@@ -220,6 +233,37 @@ pub fn mask(comparison: f32x8) -> i32x8 {
 /// A mask of whole numbers as the lanes of a comparison.
 pub fn lanes(mask: i32x8) -> f32x8 {
     wide::bytemuck::cast(mask)
+}
+
+/// [`as_signed`] of sixteen words.
+#[inline(always)]
+pub fn as_signed_words(words: u32x16) -> i32x16 {
+    wide::bytemuck::cast(words)
+}
+
+/// [`as_unsigned`] of sixteen words.
+#[inline(always)]
+pub fn as_unsigned_words(words: i32x16) -> u32x16 {
+    wide::bytemuck::cast(words)
+}
+
+/// [`mask`] of sixteen lanes.
+#[inline(always)]
+pub fn as_ray_mask(comparison: f32x16) -> i32x16 {
+    wide::bytemuck::cast(comparison)
+}
+
+/// [`lanes`] of sixteen lanes.
+#[inline(always)]
+pub fn ray_lanes(mask: i32x16) -> f32x16 {
+    wide::bytemuck::cast(mask)
+}
+
+/// All bits of those of sixteen lanes whose bit is set.
+#[inline(always)]
+pub fn lane_mask(bits: u32) -> i32x16 {
+    let of_lanes = u32x16::new(std::array::from_fn(|lane| 1 << lane));
+    as_signed_words((u32x16::splat(bits) & of_lanes).simd_eq(of_lanes))
 }
 
 /// The four values of each pixel of two quads, whose lanes the vectors are, value by value.

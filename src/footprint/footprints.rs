@@ -10,8 +10,8 @@
 //! ```
 
 use super::differences::differences;
-use crate::relief::{HeightField, MAX_SLOPE, displacement, finite, march};
-use crate::settings::FootprintRule;
+use crate::relief::{HeightField, MAX_SLOPE, ViewRays, displacement, finite, march, march_all};
+use crate::settings::{Derivatives, FootprintRule};
 use crate::simd::{PixelLanes, set_bits};
 
 /// Longest derivative that is kept, in texture repeats a pixel: a footprint of that length holds
@@ -21,6 +21,10 @@ const MAX_LENGTH: f32 = 16.0;
 /// Farthest place that is kept, in repeats: beyond, an f32 tells fewer than ten places a repeat
 /// apart.
 const FARTHEST: f32 = 1e6;
+
+/// Vectors of pixels whose rays are marched together: so many that what is left to the last of them
+/// is little.
+const MARCHED_AT_ONCE: usize = 64;
 
 /// A value along u and a value along v for each pixel, in texture repeats.
 type Uv = [PixelLanes; 2];
@@ -79,7 +83,50 @@ impl Footprints {
             return Self { base: *uv, hit: *uv, dx, dy, displacement: zero, covered }.bounded();
         }
         let (displacement, offset) = traced(uv, view, field, rule.is_traced);
-        let [dx, dy] = differences(uv, &offset, rule);
+        Self::with_offset(uv, displacement, &offset, rule, covered)
+    }
+
+    /// The pixels of two quads over the relief of `field`, the hits of whose view rays are left to
+    /// [`Self::find_hits`].
+    #[inline(always)]
+    pub fn before_hits(uv: &Uv, view: &[PixelLanes; 3], field: &HeightField, covered: u8) -> Self {
+        let none = [PixelLanes::ZERO; 2];
+        let displacement = displacement(view, field.relief_depth);
+        Self { base: *uv, hit: none, dx: none, dy: none, displacement, covered }
+    }
+
+    /// Makes pixels [before their hits](Self::before_hits) what [`Self::of_quads`] makes: the more
+    /// at once, the faster.
+    pub fn find_hits(pixels: &mut [Self], field: &HeightField, rule: &FootprintRule) {
+        for pixels in pixels.chunks_mut(MARCHED_AT_ONCE) {
+            let mut depths = [PixelLanes::ZERO; MARCHED_AT_ONCE];
+            let depths = &mut depths[..pixels.len()];
+            // Only formula (3) asks where the rays of helper lanes go.
+            let is_for_all = rule.derivatives == Derivatives::Relief;
+            let rays = pixels.iter().map(|pixels| ViewRays {
+                base: pixels.base,
+                displacement: pixels.displacement,
+                wanted: if is_for_all { u8::MAX } else { pixels.covered },
+            });
+            march_all(field, rays, depths);
+            for (pixels, depth) in pixels.iter_mut().zip(depths) {
+                let Self { base, displacement, covered, .. } = *pixels;
+                let offset = [displacement[0] * *depth, displacement[1] * *depth];
+                *pixels = Self::with_offset(&base, displacement, &offset, rule, covered);
+            }
+        }
+    }
+
+    /// The pixels of two quads, each moved by the relief's offset.
+    #[inline(always)]
+    fn with_offset(
+        uv: &Uv,
+        displacement: Uv,
+        offset: &Uv,
+        rule: &FootprintRule,
+        covered: u8,
+    ) -> Self {
+        let [dx, dy] = differences(uv, offset, rule);
         let hit = [uv[0] + offset[0], uv[1] + offset[1]];
         Self { base: *uv, hit, dx, dy, displacement, covered }.bounded()
     }

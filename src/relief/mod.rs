@@ -12,9 +12,12 @@ mod displacement;
 mod height_field;
 mod level_loss;
 mod march;
+mod maxima;
+mod patch;
 pub mod seen;
+mod walk;
 
 pub use displacement::{MAX_SLOPE, displacement, finite};
 pub use height_field::HeightField;
 pub use level_loss::LevelLoss;
-pub use march::march;
+pub use march::{ViewRays, march, march_all};

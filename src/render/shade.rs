@@ -150,6 +150,13 @@ impl<'a> Shader<'a> {
     ) {
         let field = prepared.field();
         footprints.clear();
+        if let Some(field) = field.filter(|_| self.rule.is_traced) {
+            footprints.extend(pairs.map(|index| {
+                let pair = block.pair(index);
+                Footprints::before_hits(&pair.uv, &pair.view(), field, pair.covered_bits())
+            }));
+            return Footprints::find_hits(footprints, field, &self.rule);
+        }
         footprints.extend(pairs.map(|index| {
             let pair = block.pair(index);
             // Where there is no relief, the view changes nothing and is not computed.
