@@ -47,8 +47,8 @@ pub fn march(
     depths[0]
 }
 
-/// [`march`] of many rays, which is faster by the ray: `depths` has a vector for each of theirs, whose
-/// lanes stay as they are where no hit is wanted.
+/// [`march`] of many rays, which is faster by the ray: `depths` has a vector for each of theirs,
+/// whose lanes stay as they are where no hit is wanted.
 pub fn march_all(
     field: &HeightField,
     rays: impl Iterator<Item = ViewRays>,

@@ -5,6 +5,7 @@
 //! [`Occlusion`] finds hidden.
 
 mod average;
+mod bounds;
 mod occlusion;
 mod texel_set;
 

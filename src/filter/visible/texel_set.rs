@@ -4,6 +4,7 @@
 //! decided a batch at a time and the sums visit only batches that hold a texel. A texel's place is
 //! its column and row in the endless pattern.
 
+use super::bounds::Bounds;
 use crate::footprint::{Ellipse, RowQuadric};
 use crate::simd::{TexelLanes, lane_columns};
 
@@ -25,6 +26,8 @@ pub struct TexelSet {
     pub rows: Vec<TexelRow>,
     /// A bit a texel, a byte a batch.
     pub bits: Vec<u8>,
+    /// For [`remove_hidden`](super::remove_hidden), which fills it.
+    pub(super) bounds: Bounds,
 }
 
 impl TexelSet {
@@ -67,23 +70,28 @@ impl TexelSet {
 
     /// Whether the set holds a texel.
     pub fn contains(&self, x: i32, y: i32) -> bool {
-        self.place(x, y).is_some_and(|(byte, bit)| self.bits[byte] & bit != 0)
-    }
-
-    /// The byte and bit of a texel, if a batch spans it.
-    pub fn place(&self, x: i32, y: i32) -> Option<(usize, u8)> {
-        let row = &self.rows[self.rows.binary_search_by_key(&y, |row| row.y).ok()?];
-        let column = usize::try_from(x - row.x).ok()?;
-        (column / 8 < row.batches[1]).then(|| (row.batches[0] + column / 8, 1 << (column % 8)))
+        place(&self.rows, [x, y]).is_some_and(|(byte, bit)| self.bits[byte] & bit != 0)
     }
 
     /// All texels of the set, row by row.
     pub fn iter(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
-        self.rows.iter().flat_map(move |row| {
-            let [first, num] = row.batches;
-            (0..8 * num)
-                .filter(move |i| self.bits[first + i / 8] >> (i % 8) & 1 == 1)
-                .map(|i| [row.x + i as i32, row.y])
-        })
+        texels(&self.rows, &self.bits)
     }
+}
+
+/// The byte and bit of a texel, if a batch of the rows spans it.
+pub(super) fn place(rows: &[TexelRow], [x, y]: [i32; 2]) -> Option<(usize, u8)> {
+    let row = &rows[rows.binary_search_by_key(&y, |row| row.y).ok()?];
+    let column = usize::try_from(x - row.x).ok()?;
+    (column / 8 < row.batches[1]).then(|| (row.batches[0] + column / 8, 1 << (column % 8)))
+}
+
+/// The texels of rows whose bits are set, row by row.
+pub(super) fn texels(rows: &[TexelRow], bits: &[u8]) -> impl Iterator<Item = [i32; 2]> {
+    rows.iter().flat_map(move |row| {
+        let [first, num] = row.batches;
+        (0..8 * num)
+            .filter(move |i| bits[first + i / 8] >> (i % 8) & 1 == 1)
+            .map(|i| [row.x + i as i32, row.y])
+    })
 }
