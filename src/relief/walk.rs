@@ -106,8 +106,8 @@ impl<'a> Walk<'a> {
         let waits = (is_cell & !is_above) | self.steps_left.simd_lt(i32x16::splat(1));
         // Pass the node, or open it.
         self.pass(is_above & !waits, &exits);
-        self.rays.level = self.rays.level + (!is_above & !waits);
-        self.steps_left = self.steps_left + !waits;
+        self.rays.level += !is_above & !waits;
+        self.steps_left += !waits;
         as_unsigned_words(waits).to_bitmask()
     }
 
@@ -130,7 +130,7 @@ impl<'a> Walk<'a> {
         let passes = is_met & !is_hit;
         self.pass(passes, &exits);
         self.depth = ray_lanes(is_hit).select(hit, self.depth);
-        self.steps_left = self.steps_left + is_met;
+        self.steps_left += is_met;
         // At full depth every height is met.
         let goes_on = passes & as_ray_mask(exit.simd_lt(RayLanes::ONE));
         waiting & !as_unsigned_words(goes_on).to_bitmask()
