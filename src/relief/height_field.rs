@@ -91,6 +91,7 @@ impl HeightField {
 
     /// The heights, 0 to [`FULL`](crate::texture::FULL), at the corners of a folded cell: (0,0),
     /// (1,0), (0,1), (1,1).
+    #[inline]
     pub fn corners(&self, x: i32, y: i32) -> [f32; 4] {
         // The row above the last is the last again or, where the pattern repeats, the first.
         let above = match y + 1 == self.size[1] {

@@ -3,9 +3,7 @@
 //! A *node* of level k spans 2^k x 2^k cells, less at the far edges, and holds a height that no
 //! relief in them reaches. (Maximum mipmaps: Tevs, Ihrke, Seidel 2008.)
 
-use crate::simd::{
-    RayLanes, as_signed_words, as_unsigned_words, i32x16, join_words, pick, u32x8, u32x16,
-};
+use crate::simd::{RayLanes, as_unsigned_words, i32x16, pick, u32x16};
 use crate::texture::FULL_F32;
 
 /// Most levels: a vector of sixteen lanes holds what is known of each. Larger maps end with more
@@ -69,13 +67,8 @@ impl Maxima {
         let [starts, widths] = [self.starts, self.widths].map(|of_levels| pick(of_levels, level));
         let [x, y] = [x, y].map(|cell| as_unsigned_words(cell).unbounded_shr(level));
         let places = (starts + y * widths + x).to_array();
-        // Two halves: bytes are put into a vector one after the other.
-        let mut steps = [[0; 8]; 2];
-        for lane in 0..8 {
-            steps[0][lane] = u32::from(self.steps[places[lane] as usize]);
-            steps[1][lane] = u32::from(self.steps[places[8 + lane] as usize]);
-        }
-        let steps = steps.map(u32x8::new);
-        RayLanes::from_i32x16(as_signed_words(join_words(steps))) * STEP + STEP
+        // Words and not bytes: those would be put into one vector one after the other.
+        let step = |place: u32| f32::from(self.steps[place as usize]);
+        RayLanes::new(places.map(step)) * STEP + STEP
     }
 }
