@@ -194,7 +194,7 @@ pub fn remove_hidden(set: &mut TexelSet, occlusion: &Occlusion, how: Visibility)
     let ends = |row: &TexelRow| [row.x, row.x + 8 * row.batches[1] as i32 + 14].map(|x| [x, row.y]);
     let ends = rows.iter().flat_map(ends);
     let rows_across = occlusion.level.rows(occlusion.runs_along_x);
-    let bounds = bounds.of(ends, occlusion.course(), rows_across);
+    let bounds = bounds.of((ends, bits.len()), occlusion.course(), rows_across);
     if how == Visibility::Resolved {
         return resolve(rows, bits, |texel| occlusion.first_above(texel, bounds));
     }
