@@ -187,7 +187,8 @@ impl<'a> Occlusion<'a> {
     }
 }
 
-/// Takes the hidden texels out of `set`, whose texels are the paper's T. Gives how many were tested.
+/// Takes the hidden texels out of `set`, whose texels are the paper's T. Gives how many were
+/// tested.
 pub fn remove_hidden(set: &mut TexelSet, occlusion: &Occlusion, how: Visibility) -> u64 {
     let TexelSet { rows, bits, bounds } = set;
     // A ray by itself goes along with those of the fifteen texels beside its own.
