@@ -257,6 +257,17 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(cases(300))]
+
+    /// So many and so long rays that bounds on the horizon decide most of them.
+    #[test]
+    fn large_sets_of_texels_are_the_papers(seed in any::<u64>(), wrap in prop::sample::select(vec![Wrap::Repeat, Wrap::Mirror, Wrap::Clamp]), pixel in pixel(0.7, 3.0)) {
+        let visible = Visible { texel_budget: 0, ..Visible::default() };
+        broke(invariants::visible_sets(&surface(maps(32, 24, wrap, seed)), &pixel, &visible))?;
+    }
+}
+
 /// Found by fuzzing: a ray along the very edge of the height field's cells hit up to a texel late.
 #[test]
 fn marches_along_the_edges_of_cells_find_the_first_hit() {

@@ -22,9 +22,6 @@
 use crate::simd::{LineLanes, high_halves};
 use crate::texture::Rows;
 
-/// Least steps of a ray for which bounds are found: fewer take no longer than they do.
-const LEAST_STEPS: i32 = 8;
-
 /// Most cells in all rows, 48 MiB of them: beyond, rays go without bounds.
 const MOST_CELLS: usize = 1 << 22;
 
@@ -89,16 +86,17 @@ pub(super) struct Spot<const N: usize> {
 }
 
 impl Bounds {
-    /// Finds the bounds for the rays of texels of which those at the ends of rows are given; `rows`
-    /// are the level's that run across the rays. `None` where rays do better without.
+    /// Finds the bounds for the rays of so many batches of texels, of which those at the ends of
+    /// rows are given; `rows` are the level's that run across the rays. `None` where rays do better
+    /// without.
     pub(super) fn of(
         &mut self,
-        ends: impl Iterator<Item = [i32; 2]> + Clone,
+        (ends, num_batches): (impl Iterator<Item = [i32; 2]> + Clone, usize),
         course: Course,
         rows: &Rows,
     ) -> Option<&Self> {
         self.course = course;
-        let first = ends.clone().next().filter(|_| course.num_steps >= LEAST_STEPS)?;
+        let first = ends.clone().next()?;
         self.origin = course.turned(first);
         let (mut rows_of_set, mut cells) = ([i32::MAX, i32::MIN], [f32::INFINITY, -f32::INFINITY]);
         for (row, cell) in ends.map(|texel| self.row_and_cell(texel)) {
@@ -111,7 +109,10 @@ impl Bounds {
         let num_cells = (cells[1].floor() as i32 + 2 - self.first_cell) as usize;
         let num_rows = (rows_of_set[1] + 1 - self.first_row) as usize;
         self.pitch = num_cells.next_multiple_of(LANES);
-        self.pitch.checked_mul(num_rows).filter(|&num| num <= MOST_CELLS)?;
+        // A few short rays take no longer than the sweep: one of sixteen texels goes an eighth of
+        // its steps, and a step takes as long as that of a sweep over sixteen cells.
+        let most = MOST_CELLS.min(num_batches * course.num_steps as usize);
+        self.pitch.checked_mul(num_rows).filter(|&num| num <= most)?;
         // A ray adds up its steps, a row multiplies them.
         self.slack = num_rows as f32 * (1.0 / 512.0 + course.rise * (1.0 / 4_194_304.0));
         self.sweep(rows, num_rows);

@@ -187,14 +187,15 @@ impl<'a> Occlusion<'a> {
     }
 }
 
-/// Takes the hidden texels out of `set`, whose texels are the paper's T. Gives how many were tested.
+/// Takes the hidden texels out of `set`, whose texels are the paper's T. Gives how many were
+/// tested.
 pub fn remove_hidden(set: &mut TexelSet, occlusion: &Occlusion, how: Visibility) -> u64 {
     let TexelSet { rows, bits, bounds } = set;
     // A ray by itself goes along with those of the fifteen texels beside its own.
     let ends = |row: &TexelRow| [row.x, row.x + 8 * row.batches[1] as i32 + 14].map(|x| [x, row.y]);
     let ends = rows.iter().flat_map(ends);
     let rows_across = occlusion.level.rows(occlusion.runs_along_x);
-    let bounds = bounds.of(ends, occlusion.course(), rows_across);
+    let bounds = bounds.of((ends, bits.len()), occlusion.course(), rows_across);
     if how == Visibility::Resolved {
         return resolve(rows, bits, |texel| occlusion.first_above(texel, bounds));
     }
