@@ -54,7 +54,7 @@ const TABLE_TEXELS_ACROSS: f32 = 3.0;
 
 /// Most texels of a table along the longer axis, which bounds a pixel's time: a longer footprint
 /// takes a coarser table. With 32 a street ends in flat rows, where the truth has streaks up to the
-/// vanishing point; 96 is 5 dB better in the last rows, 256 another 0.5.
+/// vanishing point; there 96 gives 47.0 dB and 256 49.6, in a fifth more time of a small frame.
 const TABLE_TEXELS_ALONG: f32 = 256.0;
 
 /// What the mean over a texel adds to the squares of an ellipse's half axes: four times the variance

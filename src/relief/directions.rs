@@ -6,7 +6,7 @@ use crate::texture::Surface;
 
 /// Slopes that are told apart, from gentle to the steepest that there is. A gentler one hides too
 /// little to matter in a large footprint. (Up to 28 alone, the last rows before a skyline are 1 % of
-/// the range too dark: 43 dB there, where 64 gives 51.)
+/// the range too dark: 43 dB there, where 64 gives 50.)
 pub const SLOPES: [f32; 2] = [0.25, MAX_SLOPE];
 
 /// Lengths of the displacement, in geometric steps over [`SLOPES`]: 1.74 times from one to
