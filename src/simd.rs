@@ -62,17 +62,8 @@ pub fn bits(bits: u8) -> u32x8 {
 
 /// The lanes whose bit is set, in order.
 #[inline(always)]
-pub fn set_bits(mut left: u8) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = left.trailing_zeros() as usize;
-        left &= left.wrapping_sub(1);
-        (lane < 8).then_some(lane)
-    })
-}
-
-/// The lanes of sixteen whose bit is set, in order.
-#[inline(always)]
-pub fn set_bits_of(mut left: u32) -> impl Iterator<Item = usize> {
+pub fn set_bits(left: impl Into<u32>) -> impl Iterator<Item = usize> {
+    let mut left = left.into();
     std::iter::from_fn(move || {
         let lane = left.trailing_zeros() as usize;
         left &= left.wrapping_sub(1);

@@ -74,6 +74,7 @@ pub fn look_up(
         // Read the coarser level only where a pixel has a share of it.
         let [red, green, blue] = match (spots.is_same, is_blended) {
             (false, _) => {
+                // Taken apart: the result of a call lies in memory, and the other ways' would, too.
                 let [red, green, blue] = on_several_levels(surface, group);
                 [red, green, blue]
             }

@@ -36,6 +36,7 @@ type Pair = [[PixelLanes; 2]; 2];
 pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &FootprintRule) -> Pair {
     if rule.formulas == Formulas::Printed {
         // The printed formulas are there to be looked at, not to be fast: they go lane by lane.
+        // Taken apart: the result of a call lies in memory, and that of the other ways would, too.
         let [[a, b], [c, d]] = letter_by_letter(uv, offset, rule);
         return [[a, b], [c, d]];
     }

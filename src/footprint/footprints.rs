@@ -253,7 +253,7 @@ fn traced(
 /// The result of a call, which lies in memory, taken apart: where two ways meet, the other one then
 /// keeps its vectors in registers.
 #[inline(always)]
-pub(super) fn in_registers<T: Copy>([a, b]: [T; 2]) -> [T; 2] {
+fn in_registers<T: Copy>([a, b]: [T; 2]) -> [T; 2] {
     [a, b]
 }
 

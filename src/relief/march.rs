@@ -12,7 +12,7 @@
 use super::displacement::{MAX_SLOPE, finite};
 use super::height_field::HeightField;
 use super::walk::{Course, Walk};
-use crate::simd::{PixelLanes, i32x8, mask, set_bits_of};
+use crate::simd::{PixelLanes, i32x8, mask, set_bits};
 
 /// Most steps of a ray. A walk of 64 repeats over a map of any size that opens every node takes
 /// fewer in practice; the bound makes the time of a hostile input finite, and the ray then ends
@@ -71,7 +71,7 @@ fn run<const WALKS: usize>(
     let (mut idle, mut done) = (0, all);
     loop {
         // Let each free lane take the next ray.
-        for lane in set_bits_of(done) {
+        for lane in set_bits(done) {
             match queue.next() {
                 Some((number, ray)) => {
                     numbers[lane / 16][lane % 16] = number;
@@ -93,7 +93,7 @@ fn run<const WALKS: usize>(
         waiting &= !idle;
         done = 0;
         (0..WALKS).for_each(|i| done |= walks[i].meet(waiting >> (16 * i) & 0xffff) << (16 * i));
-        for lane in set_bits_of(done) {
+        for lane in set_bits(done) {
             let (number, depth) = (numbers[lane / 16][lane % 16], &walks[lane / 16].depth);
             depths[number / 8].as_mut_array()[number % 8] = depth.as_array()[lane % 16];
         }

@@ -16,7 +16,7 @@ use super::height_field::HeightField;
 use super::patch::{Corners, crossing};
 use crate::simd::{
     PixelLanes, RayLanes, as_ray_mask, as_unsigned_words, i32x8, i32x16, lane_mask, ray_lanes,
-    set_bits_of,
+    set_bits,
 };
 use crate::texture::FULL_F32;
 
@@ -213,7 +213,7 @@ impl<'a> Walk<'a> {
         let [xs, ys] = at.map(|cells| cells.to_array());
         let mirror = self.rays.mirror.map(|lanes| lanes.to_array());
         let mut corners = [[0.0; 16]; 4];
-        for lane in set_bits_of(waiting) {
+        for lane in set_bits(waiting) {
             let heights = self.field.corners(xs[lane], ys[lane]);
             // Corners of a mirrored cell change places.
             let turn = (mirror[0][lane] & 1 | mirror[1][lane] & 2) as usize;

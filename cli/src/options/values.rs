@@ -1,8 +1,8 @@
 //! Options that are numbers, vectors, colours or sizes. Each parser says in a few words what it
 //! expected. Scene files hold the same values, bounded by the same checks: see `file_values`.
 
-use basrelief::Region;
 use basrelief::texture::linear_from_srgb8;
+use basrelief::{Horizon, Region};
 use glam::Vec3;
 
 /// Width and height in pixels from `1280x720`.
@@ -47,11 +47,13 @@ pub(crate) fn number(text: &str) -> Result<f32, String> {
 
 /// How finely the horizon cuts footprints: a named point or a number.
 pub(crate) fn lines(text: &str) -> Result<u32, String> {
-    const NAMED: [(&str, u32); 3] = [("fast", 4), ("default", 12), ("best", 24)];
-    let named = NAMED.iter().find(|(word, _)| *word == text).map(|(_, lines)| *lines);
-    named
-        .or_else(|| digits(text.trim()).filter(|lines| (2..=64).contains(lines)))
-        .ok_or_else(|| "is not fast, default, best or 2 to 64".into())
+    match text {
+        "fast" => Ok(4),
+        "default" => Ok(Horizon::default().lines),
+        "best" => Ok(24),
+        // The settings know the range.
+        _ => digits(text.trim()).ok_or_else(|| "is not fast, default, best or a number".into()),
+    }
 }
 
 /// A number of degrees above 0 and below 180.

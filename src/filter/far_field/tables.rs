@@ -29,15 +29,16 @@ const STEEPEST: f32 = 20.0;
 /// are built from may make in what is seen. Measured: see [`LevelLoss`](crate::relief::LevelLoss).
 const MOST_SOURCE_LOSS: f32 = 0.02;
 
+/// The number of a length that is grazing, but not the skyline's.
+const GRAZING: usize = NUM_LENGTHS - 3;
+
 /// Lengths, by their numbers, in which that difference is looked for: gentle, middle and grazing.
-const PROBED_LENGTHS: [usize; 3] = [2, NUM_LENGTHS / 2, NUM_LENGTHS - 3];
+const PROBED_LENGTHS: [usize; 3] = [2, NUM_LENGTHS / 2, GRAZING];
 
 /// And directions, as diamond angles: along u, and one that lies along no axis.
 const PROBED_ANGLES: [f32; 2] = [0.0, 0.7];
 
-/// The length at which the depth of what is seen is looked for, grazing but not the skyline's, and
-/// the directions: along both axes, and between them.
-const DEPTH_LENGTH: usize = NUM_LENGTHS - 3;
+/// Directions in which the depth of what is seen is looked for: along both axes, and between them.
 const DEPTH_ANGLES: [f32; 4] = [0.0, 0.6, 1.0, 3.3];
 
 /// Tables of the seen colour of one surface.
@@ -67,14 +68,14 @@ impl FarField {
         if surface.relief_depth() == 0.0 || surface.wrap() == Wrap::Clamp || first_level == 0 {
             return None;
         }
+        let lengths = Lengths::new(surface);
         let mut far = Self {
             first_level,
-            lengths: Lengths::new(surface),
+            lengths,
             starts: table_starts(surface, first_level, mib),
-            plane: 0.0,
+            plane: grazing_depth(surface, first_level, &lengths),
             images: Vec::new(),
         };
-        far.plane = far.seen_depth(surface);
         far.images = far.build(surface);
         Some(far)
     }
@@ -113,13 +114,6 @@ impl FarField {
         usize::from(self.first_level > 1 && greatest < MOST_SOURCE_LOSS * MOST_SOURCE_LOSS)
     }
 
-    /// The mean depth of what is seen at a grazing view.
-    fn seen_depth(&self, surface: &Surface) -> f32 {
-        let size = surface.levels()[self.first_level].size();
-        let grazing = DEPTH_ANGLES.map(|angle| self.lengths.displacement(DEPTH_LENGTH, angle));
-        seen_depth(surface, self.first_level.min(1), size, &grazing)
-    }
-
     fn view(&self, displacement: [f32; 2]) -> View {
         View { displacement, plane: self.plane }
     }
@@ -156,6 +150,13 @@ impl FarField {
         let (left, part) = (azimuth as usize % num, azimuth - azimuth.floor());
         [(self.starts[length] + left, 1.0 - part), (self.starts[length] + (left + 1) % num, part)]
     }
+}
+
+/// The mean depth of what is seen at a grazing view.
+fn grazing_depth(surface: &Surface, first_level: usize, lengths: &Lengths) -> f32 {
+    let size = surface.levels()[first_level].size();
+    let grazing = DEPTH_ANGLES.map(|angle| lengths.displacement(GRAZING, angle));
+    seen_depth(surface, first_level.min(1), size, &grazing)
 }
 
 /// Where each length's tables begin: as many azimuths as the memory allows, in proportion to a power
