@@ -179,11 +179,12 @@ mod settings;
 pub mod simd;
 
 pub use error::{Error, Result};
+pub use footprint::FootprintRule;
 pub use frame::Frame;
 pub use render::{DrawnPixel, Renderer, Stats, render};
 pub use scene::{Camera, Light, Material, Mesh, Scene};
 pub use settings::{
-    Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, Lighting, RECONSTRUCTION, Rays,
+    Derivatives, Ewa, Filter, Formulas, Horizon, Lighting, OptionsMut, RECONSTRUCTION, Rays,
     Region, Settings, Trilinear, Visibility, Visible,
 };
 pub use simd::LEVEL as SIMD_LEVEL;

@@ -136,7 +136,7 @@ fn many_rays_come_close_to_truth_and_few_do_not() {
 fn sets_of_texels_are_the_papers_on_every_footprint_of_a_frame() {
     // Base level nearby; beyond the horizon, where a quad's footprints have no end, a coarse one.
     let visible = Visible { texel_budget: 1024, ..paper() };
-    let (filter, rule) = (Filter::Visible(visible), Filter::Visible(visible).footprint_rule());
+    let (filter, rule) = (Filter::Visible(visible), Filter::Visible(visible).traits().rule);
     let settings = Settings { width: 48, height: 27, ..settings(filter) };
     let scene = floor();
     let surface = scene.materials[0].surface.as_deref().expect("a relief floor");

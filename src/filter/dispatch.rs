@@ -3,7 +3,7 @@
 use super::batch::{Batch, Filtered, LevelChoice, Work, each_covered};
 use super::horizon::{self, HorizonScratch};
 use super::prepared::Prepared;
-use super::samples::SampleOffsets;
+use super::traits::Reads;
 use super::visible::{self, TexelSet};
 use super::{ewa, parallax, points, trilinear, truth};
 use crate::footprint::{Footprint, Footprints, levels};
@@ -22,7 +22,7 @@ impl Filter {
     /// batch's.
     ///
     /// A pixel of [`Self::Truth`], and of [`Self::Parallax`] with more than one ray, is the mean
-    /// over [samples](Self::samples) of it; each sample is a footprint of its own here.
+    /// over [samples](super::Traits::samples) of it; each sample is a footprint of its own here.
     pub fn colors(
         &self,
         prepared: &Prepared,
@@ -122,45 +122,26 @@ impl Filter {
     pub fn level(&self, prepared: &Prepared, footprint: &Footprint) -> LevelChoice {
         self.levels(prepared, &[Footprints::splat(footprint)], false, &mut Scratch::default())[0][0]
     }
-
-    /// Where the rays of a pixel go; `None` for a filter that takes a footprint for a pixel.
-    pub fn samples(&self) -> Option<SampleOffsets> {
-        match self {
-            // One ray goes through the pixel's centre, as the footprint does.
-            Self::Parallax(Rays { samples: 1 }) => None,
-            Self::Parallax(Rays { samples }) => {
-                Some(SampleOffsets::new(&parallax::offsets(*samples), false))
-            }
-            Self::Truth(Rays { samples }) => {
-                Some(SampleOffsets::new(&truth::offsets(*samples), true))
-            }
-            // Each is named, so that a new filter cannot be forgotten here.
-            Self::Nearest
-            | Self::Bilinear
-            | Self::Trilinear(_)
-            | Self::Ewa(_)
-            | Self::Visible(_)
-            | Self::Horizon(_) => None,
-        }
-    }
-
-    /// Whether lights are asked for each texel that is seen, so that colours hold their diffuse
-    /// part already.
-    pub fn asks_for_lights(&self) -> bool {
-        match self {
-            Self::Horizon(_) => true,
-            Self::Nearest
-            | Self::Bilinear
-            | Self::Trilinear(_)
-            | Self::Ewa(_)
-            | Self::Visible(_)
-            | Self::Parallax(_)
-            | Self::Truth(_) => false,
-        }
-    }
 }
 
 impl Prepared {
+    /// Makes now what a filter would make when it is first asked for a colour.
+    pub fn make_ready(&self, filter: &Filter, is_lit: bool) {
+        self.field();
+        match filter.traits().reads {
+            Reads::TexelsAlone => {}
+            Reads::Cells => drop(self.cells()),
+            // Lights are asked for each texel, which neither serves.
+            Reads::Seen { .. } if is_lit => {}
+            Reads::Seen { far_field_mib } => {
+                if let Some(loss) = self.level_loss() {
+                    loss.measure_all(self.surface());
+                }
+                far_field_mib.map(|mib| self.far_field(mib));
+            }
+        }
+    }
+
     /// The linear RGB, unlit, of pixels by a filter, each by itself: a colour does not depend on
     /// what else is given.
     pub fn colors(&self, filter: &Filter, footprints: &[Footprint]) -> Vec<[f32; 3]> {

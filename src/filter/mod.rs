@@ -60,6 +60,7 @@ pub mod points;
 mod prepared;
 mod queue;
 mod samples;
+mod traits;
 #[doc(hidden)]
 pub mod trilinear;
 mod truth;
@@ -71,3 +72,4 @@ pub use batch::{Batch, Filtered, LevelChoice, Work};
 pub use dispatch::Scratch;
 pub use prepared::Prepared;
 pub use samples::SampleOffsets;
+pub use traits::{Reads, Traits};

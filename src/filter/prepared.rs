@@ -3,7 +3,6 @@
 use super::far_field::FarField;
 use crate::footprint::Footprint;
 use crate::relief::{HeightCells, HeightField, LevelLoss, displacement, march};
-use crate::settings::Filter;
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -51,29 +50,6 @@ impl Prepared {
     /// The same surface without tables for distant footprints.
     pub fn without_far_field(&self) -> Self {
         Self { has_far_field: false, ..self.clone() }
-    }
-
-    /// Makes now what a filter would make when it is first asked for a colour.
-    pub fn make_ready(&self, filter: &Filter, is_lit: bool) {
-        self.field();
-        match filter {
-            Filter::Horizon(horizon) if !is_lit => {
-                if let Some(loss) = self.level_loss() {
-                    loss.measure_all(&self.surface);
-                }
-                if horizon.far_field {
-                    self.far_field(horizon.far_field_mib);
-                }
-            }
-            Filter::Parallax(_) => drop(self.cells()),
-            Filter::Horizon(_)
-            | Filter::Nearest
-            | Filter::Bilinear
-            | Filter::Trilinear(_)
-            | Filter::Ewa(_)
-            | Filter::Visible(_)
-            | Filter::Truth(_) => {}
-        }
     }
 
     /// The pixel at `base` with the derivatives `dx` and `dy` of the flat polygon's coordinates, in

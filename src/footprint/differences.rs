@@ -19,8 +19,9 @@
 //! does not speak of this. A rule with a `max_stretch` therefore takes formula (2) for a difference
 //! that (3) makes many times longer.
 
+use super::rule::FootprintRule;
 use crate::relief::finite;
-use crate::settings::{Derivatives, FootprintRule, Formulas};
+use crate::settings::{Derivatives, Formulas};
 use crate::simd::{PixelLanes, permute};
 
 /// `(d/dx, d/dy)` of u and v for eight pixels.

@@ -10,8 +10,9 @@
 //! ```
 
 use super::differences::differences;
+use super::rule::FootprintRule;
 use crate::relief::{HeightField, MAX_SLOPE, ViewRays, displacement, finite, march, march_all};
-use crate::settings::{Derivatives, FootprintRule};
+use crate::settings::Derivatives;
 use crate::simd::{PixelLanes, set_bits};
 
 /// Longest derivative that is kept, in texture repeats a pixel: a footprint of that length holds

@@ -10,8 +10,10 @@ mod ellipse;
 mod ellipses;
 mod footprints;
 pub mod levels;
+mod rule;
 
 pub use differences::{Corner, at_pixel, differences};
 pub use ellipse::{Ellipse, LEAST_AXIS, RowQuadric};
 pub use ellipses::Ellipses;
 pub use footprints::{Footprint, Footprints};
+pub use rule::FootprintRule;

@@ -7,8 +7,8 @@
 //! relief between two rows is `M_i - M_(i-1)`. All in texels of the level along the line.
 
 use super::ground::QuadPixel;
-use crate::footprint::Ellipse;
-use crate::settings::{FootprintRule, Formulas};
+use crate::footprint::{Ellipse, FootprintRule};
+use crate::settings::Formulas;
 use crate::texture::{Level, Surface};
 
 /// A shorter displacement, in texels, hides nothing.

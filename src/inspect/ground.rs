@@ -1,12 +1,12 @@
 //! The triangle at a pixel's centre, and what the pixel's quad knows of it.
 
 use super::ray::Ray;
-use crate::footprint::{Footprint, Footprints};
+use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::geometry::{self, Geometry, ScreenTriangle, sample_offsets};
 use crate::raster::{AttributePlanes, Edges, Rect};
 use crate::relief::{HeightField, displacement, finite, march};
 use crate::scene::Scene;
-use crate::settings::{FootprintRule, Settings};
+use crate::settings::Settings;
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
 

@@ -206,7 +206,7 @@ impl Probe<'_> {
         match self.view {
             View::Mip => [choice.level as f32 + choice.blend, choice.far_share, 0.0],
             View::Footprint => {
-                let formulas = filter.footprint_rule().formulas;
+                let formulas = filter.traits().rule.formulas;
                 let ellipse = Ellipse::new(footprint, surface.base().texels_per_repeat(), formulas);
                 [ellipse.widened(filter.max_anisotropy(), formulas).area(), 0.0, 0.0]
             }

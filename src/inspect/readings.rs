@@ -1,8 +1,8 @@
 //! Formulas (1), (2) and (3) for one pixel, in both readings.
 
 use super::ground::QuadPixel;
-use crate::footprint::Ellipse;
-use crate::settings::{Derivatives, FootprintRule, Formulas};
+use crate::footprint::{Ellipse, FootprintRule};
+use crate::settings::{Derivatives, Formulas};
 use crate::texture::{Level, Surface};
 
 /// Texture coordinates of a pixel and what the relief adds to them, in repeats.

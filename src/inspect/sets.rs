@@ -38,19 +38,14 @@ pub struct Sets {
 }
 
 impl Sets {
-    /// The sets of a pixel for a filter: those of the ellipse of `Ewa` or `Visible`, on the level
-    /// that the filter reads; any other filter is shown the paper's.
+    /// The sets of a pixel for a filter: those of its own ellipse, on the level that it reads, or
+    /// the paper's where it has none of so many texels.
     pub(super) fn new(prepared: &Prepared, seen: &QuadPixel, filter: &Filter) -> Self {
-        let shown = match filter {
-            Filter::Ewa(_) | Filter::Visible(_) => *filter,
-            Filter::Nearest
-            | Filter::Bilinear
-            | Filter::Trilinear(_)
-            | Filter::Horizon(_)
-            | Filter::Parallax(_)
-            | Filter::Truth(_) => Filter::Visible(Visible::default()),
-        };
-        let rule = shown.footprint_rule();
+        let mut shown = *filter;
+        if shown.options_mut().texel_budget.is_none() {
+            shown = Filter::Visible(Visible::default());
+        }
+        let rule = shown.traits().rule;
         let footprint = seen.footprint(&rule);
         let number = shown.level(prepared, &footprint).level;
         let level = &prepared.surface().levels()[number];

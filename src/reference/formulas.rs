@@ -1,6 +1,7 @@
 //! Formulas (1), (2) and (3) as the paper prints them and as they are meant.
 
-use crate::settings::{Derivatives, FootprintRule, Formulas};
+use crate::footprint::FootprintRule;
+use crate::settings::{Derivatives, Formulas};
 
 /// `[du/dx, dv/dx, du/dy, dv/dy]` from coordinates `[u, v]` and relief offsets at (x, y), (x+1, y)
 /// and (x, y+1).

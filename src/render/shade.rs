@@ -1,12 +1,12 @@
 //! The colours of a block of quads: footprints, filter, light.
 
 use super::prepared::PreparedScene;
-use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Scratch, Work};
-use crate::footprint::{Footprint, Footprints};
+use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Scratch, Traits, Work};
+use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::light::{LocalLights, SurfacePoint};
 use crate::raster::{AttributePlanes, LitPlanes, Plane, Pool, QuadBlock, QuadPair};
 use crate::scene::{Material, Scene};
-use crate::settings::{FootprintRule, Lighting, Settings};
+use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
 use crate::texture::{FULL_F32, Texel};
 use glam::Vec3;
@@ -28,8 +28,7 @@ pub(crate) struct Shader<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
     prepared: &'a PreparedScene,
-    samples: Option<SampleOffsets>,
-    rule: FootprintRule,
+    traits: Traits,
     pool: &'a Pool<ShadeScratch>,
     num_texels: [AtomicU64; 2],
 }
@@ -57,8 +56,8 @@ impl<'a> Shader<'a> {
         prepared: &'a PreparedScene,
         pool: &'a Pool<ShadeScratch>,
     ) -> Self {
-        let (samples, rule) = (settings.filter.samples(), settings.filter.footprint_rule());
-        Self { scene, settings, prepared, samples, rule, pool, num_texels: Default::default() }
+        let traits = settings.filter.traits();
+        Self { scene, settings, prepared, traits, pool, num_texels: Default::default() }
     }
 
     /// What filtering took so far.
@@ -78,7 +77,7 @@ impl<'a> Shader<'a> {
         };
         let ground = Ground { material, prepared };
         let mut scratch = self.pool.take();
-        if let Some(samples) = &self.samples {
+        if let Some(samples) = &self.traits.samples {
             return colors.extend(
                 block.pairs().map(|pair| self.sampled(&ground, &pair, samples, &mut scratch)),
             );
@@ -154,18 +153,18 @@ impl<'a> Shader<'a> {
     ) {
         let field = prepared.field();
         footprints.clear();
-        if let Some(field) = field.filter(|_| self.rule.is_traced) {
+        if let Some(field) = field.filter(|_| self.traits.rule.is_traced) {
             footprints.extend(pairs.map(|index| {
                 let pair = block.pair(index);
                 Footprints::before_hits(&pair.uv, &pair.view(), field, pair.covered_bits())
             }));
-            return Footprints::find_hits(footprints, field, &self.rule);
+            return Footprints::find_hits(footprints, field, &self.traits.rule);
         }
         footprints.extend(pairs.map(|index| {
             let pair = block.pair(index);
             // Where there is no relief, the view changes nothing and is not computed.
             let view = if field.is_some() { pair.view() } else { [PixelLanes::ZERO; 3] };
-            Footprints::of_quads(&pair.uv, &view, field, &self.rule, pair.covered_bits())
+            Footprints::of_quads(&pair.uv, &view, field, &self.traits.rule, pair.covered_bits())
         }));
     }
 
@@ -249,7 +248,7 @@ impl<'a> Shader<'a> {
         let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
         let (uv, view) = planes.at(x, y);
         let field = ground.prepared.field();
-        Footprints::of_samples((&uv, &view), field, self.rule.is_traced, pixel, covered)
+        Footprints::of_samples((&uv, &view), field, self.traits.rule.is_traced, pixel, covered)
     }
 
     fn is_lit(&self) -> bool {
@@ -268,7 +267,7 @@ impl<'a> Shader<'a> {
         let normal = Vec3::from(texel.normal);
         let specular = lights.specular(normal, ground.material);
         // Such a filter has the diffuse light in its mean, texel by texel; the highlight is left.
-        if self.settings.filter.asks_for_lights() {
+        if self.traits.asks_for_lights {
             color + specular
         } else {
             color * lights.diffuse(normal) + specular

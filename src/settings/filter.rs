@@ -1,7 +1,5 @@
 //! The filters, and what each of them can be told.
 
-use crate::error::{Error, Result, within};
-
 /// Which texels make up a pixel's colour. Each filter carries its own options, all with defaults:
 ///
 /// ```
@@ -147,7 +145,7 @@ pub struct Rays {
 pub const RECONSTRUCTION: f32 = 4.0 / 6.0;
 
 /// What `max_anisotropy` is by default.
-const MAX_ANISOTROPY: f32 = 64.0;
+pub(super) const MAX_ANISOTROPY: f32 = 64.0;
 
 const RELIEF: (Derivatives, Formulas) = (Derivatives::Relief, Formulas::Meant);
 const TRILINEAR: Trilinear = Trilinear { derivatives: RELIEF.0, formulas: RELIEF.1 };
@@ -208,29 +206,6 @@ impl Default for Filter {
     }
 }
 
-/// How a filter's footprints are made of the quad's coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FootprintRule {
-    /// Formula (2) or (3).
-    pub derivatives: Derivatives,
-    /// As meant or as printed.
-    pub formulas: Formulas,
-    /// See [`Visible::max_stretch`]; 0 takes no difference for a jump.
-    pub max_stretch: f32,
-    /// Whether the view ray is followed to the relief; else the hit is the base place.
-    pub is_traced: bool,
-}
-
-impl FootprintRule {
-    /// Formula (2) as meant, on the polygon.
-    pub const FLAT: Self = Self {
-        derivatives: Derivatives::Flat,
-        formulas: Formulas::Meant,
-        max_stretch: 0.0,
-        is_traced: false,
-    };
-}
-
 impl Filter {
     /// Every filter with its default options.
     pub const ALL: [Self; 8] = [
@@ -243,76 +218,4 @@ impl Filter {
         Self::Parallax(RAYS),
         Self::Truth(RAYS),
     ];
-
-    /// How its footprints are made.
-    pub fn footprint_rule(&self) -> FootprintRule {
-        let traced = |derivatives, formulas, max_stretch| FootprintRule {
-            derivatives,
-            formulas,
-            max_stretch,
-            is_traced: true,
-        };
-        match *self {
-            Self::Nearest | Self::Bilinear | Self::Truth(_) => {
-                FootprintRule { is_traced: true, ..FootprintRule::FLAT }
-            }
-            Self::Trilinear(Trilinear { derivatives, formulas }) => {
-                traced(derivatives, formulas, 0.0)
-            }
-            Self::Ewa(Ewa { derivatives, formulas, .. }) => traced(derivatives, formulas, 0.0),
-            Self::Visible(Visible { derivatives, formulas, max_stretch, .. }) => {
-                traced(derivatives, formulas, max_stretch)
-            }
-            // They find what is seen by themselves, around the base place.
-            Self::Horizon(_) | Self::Parallax(_) => FootprintRule::FLAT,
-        }
-    }
-
-    /// Longest allowed axis of its ellipse over the shortest; without an ellipse of its own, the
-    /// default.
-    pub fn max_anisotropy(&self) -> f32 {
-        match *self {
-            Self::Ewa(Ewa { max_anisotropy, .. })
-            | Self::Visible(Visible { max_anisotropy, .. })
-            | Self::Horizon(Horizon { max_anisotropy, .. }) => max_anisotropy,
-            Self::Nearest
-            | Self::Bilinear
-            | Self::Trilinear(_)
-            | Self::Parallax(_)
-            | Self::Truth(_) => MAX_ANISOTROPY,
-        }
-    }
-
-    /// Checks every option against its range.
-    ///
-    /// # Errors
-    /// Names the first option whose value is out of its range.
-    pub fn validate(&self) -> Result<()> {
-        match *self {
-            Self::Nearest | Self::Bilinear | Self::Trilinear(_) => Ok(()),
-            Self::Ewa(Ewa { max_anisotropy, cut, texel_kernel, .. }) => {
-                within("cut", cut, 1.0, 1.5)?;
-                within("texel_kernel", texel_kernel, 0.25, 1.0)?;
-                within("max_anisotropy", max_anisotropy, 1.0, 1e6)
-            }
-            Self::Visible(Visible { max_anisotropy, max_stretch, .. }) => {
-                within("max_anisotropy", max_anisotropy, 1.0, 1e6)?;
-                if !(max_stretch == 0.0 || (1.0..=1e6).contains(&max_stretch)) {
-                    return Err(Error::setting(
-                        "max_stretch",
-                        format!("{max_stretch} is not 0 or within 1 to 1e6"),
-                    ));
-                }
-                Ok(())
-            }
-            Self::Horizon(Horizon { lines, far_field_mib, max_anisotropy, .. }) => {
-                within("lines", lines, 2, 64)?;
-                within("far_field_mib", far_field_mib, 1, 4096)?;
-                within("max_anisotropy", max_anisotropy, 1.0, 1e6)
-            }
-            Self::Parallax(Rays { samples }) | Self::Truth(Rays { samples }) => {
-                within("samples", samples, 1, 65536)
-            }
-        }
-    }
 }

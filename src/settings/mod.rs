@@ -2,13 +2,15 @@
 //! [`Settings::default`].
 
 mod filter;
+mod options;
 
 use crate::error::{Error, Result, within};
 
 pub use filter::{
-    Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, RECONSTRUCTION, Rays, Trilinear,
-    Visibility, Visible,
+    Derivatives, Ewa, Filter, Formulas, Horizon, RECONSTRUCTION, Rays, Trilinear, Visibility,
+    Visible,
 };
+pub use options::OptionsMut;
 
 /// Whether lights are evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,9 +2,7 @@
 
 use crate::options::choices::{self, ON_OFF, Words, one_of};
 use crate::options::values;
-use basrelief::{
-    Derivatives, Ewa, Filter, Formulas, Horizon, Rays, Trilinear, Visibility, Visible,
-};
+use basrelief::{Derivatives, Ewa, Filter, Formulas, Visibility, Visible};
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
@@ -96,54 +94,20 @@ impl FilterOptions {
 
     /// Which option sets what of which filter, read both ways.
     fn link(&mut self, filter: &mut Filter, way: Way) {
-        match filter {
-            Filter::Nearest | Filter::Bilinear => {}
-            Filter::Trilinear(Trilinear { derivatives, formulas }) => {
-                way.link(&mut self.derivatives, derivatives);
-                way.link(&mut self.formulas, formulas);
-            }
-            Filter::Ewa(Ewa {
-                derivatives,
-                formulas,
-                texel_budget,
-                max_anisotropy,
-                every_texel,
-                cut,
-                texel_kernel,
-            }) => {
-                way.link(&mut self.derivatives, derivatives);
-                way.link(&mut self.formulas, formulas);
-                way.link(&mut self.texel_budget, texel_budget);
-                way.link(&mut self.max_anisotropy, max_anisotropy);
-                way.link(&mut self.every_texel, every_texel);
-                way.link(&mut self.cut, cut);
-                way.link(&mut self.texel_kernel, texel_kernel);
-            }
-            Filter::Visible(Visible {
-                visibility,
-                derivatives,
-                formulas,
-                texel_budget,
-                max_anisotropy,
-                max_stretch,
-            }) => {
-                way.link(&mut self.visible, visibility);
-                way.link(&mut self.derivatives, derivatives);
-                way.link(&mut self.formulas, formulas);
-                way.link(&mut self.texel_budget, texel_budget);
-                way.link(&mut self.max_anisotropy, max_anisotropy);
-                way.link(&mut self.max_stretch, max_stretch);
-            }
-            Filter::Horizon(Horizon { lines, far_field, far_field_mib, max_anisotropy }) => {
-                way.link(&mut self.lines, lines);
-                way.link(&mut self.far_field, far_field);
-                way.link(&mut self.far_field_mib, far_field_mib);
-                way.link(&mut self.max_anisotropy, max_anisotropy);
-            }
-            Filter::Parallax(Rays { samples }) | Filter::Truth(Rays { samples }) => {
-                way.link(&mut self.samples, samples);
-            }
-        }
+        let theirs = filter.options_mut();
+        way.link(&mut self.visible, theirs.visibility);
+        way.link(&mut self.derivatives, theirs.derivatives);
+        way.link(&mut self.formulas, theirs.formulas);
+        way.link(&mut self.texel_budget, theirs.texel_budget);
+        way.link(&mut self.cut, theirs.cut);
+        way.link(&mut self.texel_kernel, theirs.texel_kernel);
+        way.link(&mut self.every_texel, theirs.every_texel);
+        way.link(&mut self.max_anisotropy, theirs.max_anisotropy);
+        way.link(&mut self.max_stretch, theirs.max_stretch);
+        way.link(&mut self.samples, theirs.samples);
+        way.link(&mut self.lines, theirs.lines);
+        way.link(&mut self.far_field, theirs.far_field);
+        way.link(&mut self.far_field_mib, theirs.far_field_mib);
     }
 }
 
@@ -164,7 +128,9 @@ enum Way {
 }
 
 impl Way {
-    fn link<T: Copy>(self, option: &mut Option<T>, value: &mut T) {
+    /// Does nothing for an option that the filter does not have.
+    fn link<T: Copy>(self, option: &mut Option<T>, value: Option<&mut T>) {
+        let Some(value) = value else { return };
         match self {
             Self::ToFilter => *value = option.unwrap_or(*value),
             Self::ToOptions => *option = Some(*value),

@@ -64,18 +64,9 @@ fn filters(asked: &[Filter]) -> Result<Vec<Filter>, Refusal> {
 }
 
 /// The default options, but one ray a pixel where a filter takes many, as graphics cards do.
-fn with_options(filter: Filter) -> Filter {
-    match filter {
-        Filter::Parallax(_) => Filter::Parallax(Rays { samples: 1 }),
-        // Each is named, so that a new filter cannot be forgotten here.
-        Filter::Nearest
-        | Filter::Bilinear
-        | Filter::Trilinear(_)
-        | Filter::Ewa(_)
-        | Filter::Visible(_)
-        | Filter::Horizon(_)
-        | Filter::Truth(_) => filter,
-    }
+fn with_options(mut filter: Filter) -> Filter {
+    filter.options_mut().samples.into_iter().for_each(|samples| *samples = 1);
+    filter
 }
 
 /// What is to be measured.

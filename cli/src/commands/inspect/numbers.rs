@@ -117,7 +117,7 @@ fn push_formula(text: &mut String, formula: u32, derivatives: Derivatives, readi
 
 fn push_sets(text: &mut String, sets: &Sets, subject: &Subject) {
     let [w, h] = sets.texels_per_repeat;
-    let FootprintRule { derivatives, formulas, .. } = subject.settings.filter.footprint_rule();
+    let FootprintRule { derivatives, formulas, .. } = subject.settings.filter.traits().rule;
     let (of, reading) = (word(&derivatives), word(&formulas));
     let counted = sets.counted_twice.iter().map(|(_, count)| count - 1).sum::<u32>();
     let _ = writeln!(
