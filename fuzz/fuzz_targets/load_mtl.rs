@@ -1,3 +1,5 @@
+//! Fuzzes [`basrelief_fuzz::load_mtl`].
+
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| basrelief_fuzz::load_mtl(bytes));
