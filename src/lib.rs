@@ -181,7 +181,7 @@ pub mod simd;
 pub use error::{Error, Result};
 pub use frame::Frame;
 pub use render::{DrawnPixel, Renderer, Stats, render};
-pub use scene::{Camera, Light, Material, Mesh, Scene};
+pub use scene::{Camera, Environment, Light, Material, Mesh, Scene, Sky};
 pub use settings::{
     Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, Lighting, RECONSTRUCTION, Rays,
     Region, Settings, Trilinear, Visibility, Visible,
