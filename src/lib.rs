@@ -182,7 +182,7 @@ pub use error::{Error, Result};
 pub use footprint::FootprintRule;
 pub use frame::Frame;
 pub use render::{DrawnPixel, Renderer, Stats, render};
-pub use scene::{Camera, Light, Material, Mesh, Scene};
+pub use scene::{Camera, Environment, Light, Material, Mesh, Scene, Sky};
 pub use settings::{
     Derivatives, Ewa, Filter, Formulas, Horizon, Lighting, OptionsMut, RECONSTRUCTION, Rays,
     Region, Settings, Trilinear, Visibility, Visible,

@@ -8,7 +8,7 @@ mod common;
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
 use basrelief::{
     Derivatives, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material, Mesh, Rays,
-    Region, Renderer, Scene, Settings, Trilinear, Visibility, Visible,
+    Region, Renderer, Scene, Settings, Sky, Trilinear, Visibility, Visible,
 };
 use common::{cobbles, floor_scene};
 use glam::{Vec2, Vec3};
@@ -37,10 +37,10 @@ fn scene(wrap: Wrap, size: u32) -> Scene {
     let mut plain = Mesh::new(corners, vec![], vec![], vec![[0, 1, 2]]);
     plain.material = 2;
     scene.meshes.extend([wall, plain]);
-    scene.ambient = Vec3::splat(0.1);
+    scene.sky = Sky::Color(Vec3::splat(0.1));
     scene.background = [0.3, 0.5, 0.7, 0.5];
     scene.lights = vec![
-        Light::Directional { to_light: Vec3::new(0.5, 1.0, 0.3), intensity: Vec3::splat(0.8) },
+        Light::sun(Vec3::new(0.5, 1.0, 0.3), Vec3::splat(0.8)),
         Light::Point { position: Vec3::new(-1.0, 1.0, 3.0), intensity: Vec3::new(1.5, 1.0, 0.5) },
     ];
     scene

@@ -16,7 +16,7 @@ use basrelief::reference::{self, Conic, Lines, Ray};
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
 use basrelief::{
     Camera, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material, Mesh, RECONSTRUCTION,
-    Rays, Scene, Settings, Visible, render,
+    Rays, Scene, Settings, Sky, Visible, render,
 };
 use common::{cobbles, floor_scene};
 use glam::Vec3;
@@ -317,11 +317,11 @@ fn frames_are_the_accepted_ones() {
 #[test]
 fn lit_relief_is_the_accepted_one() {
     let mut scene = floor(Wrap::Repeat);
-    scene.ambient = Vec3::splat(0.1);
+    scene.sky = Sky::Color(Vec3::splat(0.1));
     scene.materials[0].specular = Vec3::splat(0.4);
     // A low sun from the left, and a lamp over the middle.
     scene.lights = vec![
-        Light::Directional { to_light: Vec3::new(-1.0, 0.5, 0.0), intensity: Vec3::splat(0.9) },
+        Light::sun(Vec3::new(-1.0, 0.5, 0.0), Vec3::splat(0.9)),
         Light::Point { position: Vec3::new(0.0, 0.7, -1.8), intensity: Vec3::new(1.5, 1.0, 0.5) },
     ];
     check_frame(

@@ -9,7 +9,7 @@ mod common;
 use basrelief::inspect::{self, Measured, View, measure};
 use basrelief::texture::{HeightImage, Surface, SurfaceMaps};
 use basrelief::{
-    Ewa, Filter, Frame, Horizon, Lighting, Rays, Renderer, Scene, Settings, Stats, Visible,
+    Ewa, Filter, Frame, Horizon, Lighting, Rays, Renderer, Scene, Settings, Sky, Stats, Visible,
 };
 use common::{cobbles, floor_scene};
 use glam::Vec3;
@@ -50,7 +50,7 @@ fn mounds() -> Surface {
 
 /// A floor to the horizon under white light from everywhere, which leaves colours as they are.
 fn floor(surface: Surface) -> Scene {
-    Scene { ambient: Vec3::ONE, ..floor_scene(surface, 0.15) }
+    Scene { sky: Sky::Color(Vec3::ONE), ..floor_scene(surface, 0.15) }
 }
 
 fn settings(filter: Filter) -> Settings {

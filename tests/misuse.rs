@@ -3,7 +3,7 @@
 use basrelief::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps, Wrap};
 use basrelief::{
     Camera, Derivatives, Error, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material,
-    Mesh, Rays, Region, Renderer, Scene, Settings, Trilinear, Visibility, Visible, metrics,
+    Mesh, Rays, Region, Renderer, Scene, Settings, Sky, Trilinear, Visibility, Visible, metrics,
 };
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
@@ -208,13 +208,19 @@ fn mesh() -> impl Strategy<Value = Mesh> {
 }
 
 fn scene() -> impl Strategy<Value = Scene> {
-    let light =
-        (any::<bool>(), vector(), vector()).prop_map(
-            |(is_point, place, intensity)| match is_point {
-                true => Light::Point { position: place, intensity: intensity.abs() },
-                false => Light::Directional { to_light: place, intensity: intensity.abs() },
-            },
-        );
+    let size = prop_oneof![8 => 0.0..5.0_f32, 1 => number()];
+    let light = (any::<bool>(), vector(), vector(), size).prop_map(
+        |(is_point, place, intensity, angular_size)| match is_point {
+            true => Light::Point { position: place, intensity: intensity.abs() },
+            false => Light::Sun { to_light: place, intensity: intensity.abs(), angular_size },
+        },
+    );
+    let sky = (any::<bool>(), vector(), vector(), vector()).prop_map(
+        |(is_gradient, top, horizon, ground)| match is_gradient {
+            true => Sky::Gradient { top: top.abs(), horizon: horizon.abs(), ground: ground.abs() },
+            false => Sky::Color(top.abs()),
+        },
+    );
     let material =
         (maps(), vector(), vector(), number()).prop_map(|(maps, diffuse, specular, shininess)| {
             Material {
@@ -240,20 +246,20 @@ fn scene() -> impl Strategy<Value = Scene> {
             fov_degrees,
             near,
         });
-    let colors = (vector(), prop_oneof![5 => Just([0.5; 4]), 1 => prop::array::uniform4(number())]);
+    let background = prop_oneof![5 => Just([0.5; 4]), 1 => prop::array::uniform4(number())];
     (
         prop::collection::vec(mesh(), 0..3),
         material,
         camera,
         prop::collection::vec(light, 0..3),
-        colors,
+        (sky, background),
     )
-        .prop_map(|(meshes, material, camera, lights, (ambient, background))| Scene {
+        .prop_map(|(meshes, material, camera, lights, (sky, background))| Scene {
             meshes,
             materials: vec![material],
             camera,
             lights,
-            ambient: ambient.abs(),
+            sky,
             background,
         })
 }

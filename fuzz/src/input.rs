@@ -154,7 +154,7 @@ pub(crate) fn floor() -> Scene {
         meshes: vec![Mesh::new(positions, tex_coords, vec![], vec![[0, 1, 2], [0, 2, 3]])],
         materials: vec![Material { surface: Some(Arc::new(surface)), ..Material::default() }],
         camera: Camera::framing(Vec3::splat(-4.0), Vec3::splat(4.0), 1.0),
-        lights: vec![Light::Directional { to_light: Vec3::Y, intensity: Vec3::ONE }],
+        lights: vec![Light::sun(Vec3::Y, Vec3::ONE)],
         ..Scene::default()
     }
 }

@@ -1,26 +1,28 @@
-//! Filtered albedo and normal with lights to a colour: ambient, Lambert and Blinn-Phong.
+//! Filtered albedo and normal with lights to a colour: sky, Lambert and Blinn-Phong.
 //!
 //! ```text
-//! colour = albedo (ambient + sum I max(0, n.l)) + specular sum I f (n.h)^s     h = normalize(l + v), where n.l > 0
+//! colour = albedo (sky(n) + sum I max(0, n.l)) + specular sum I f (n.h)^s     h = normalize(l + v), where n.l > 0
 //! ```
 //!
 //! Where a pixel holds many normals, `n` is their mean, and the highlight is widened by how much
 //! shorter than one it is: `s' = f' s`, `f' = |n| / (|n| + s (1 - |n|))`, with the lobe's height
 //! scaled by `f = (1 + s') / (1 + s)` (Toksvig 2005, "Mipmapping normal maps").
 
-use crate::scene::{Light, Material};
+use crate::scene::{Light, Material, Sky};
 use glam::Vec3;
 
 /// The lights as one place of a surface sees them, in the frame of its texture: x along u, y along
 /// v, z off the surface.
 #[derive(Clone, Debug, Default)]
 pub struct LocalLights {
-    /// Light from everywhere.
+    /// What the sky lights a white surface to that lies in the polygon.
     pub ambient: Vec3,
     /// Unit direction towards each light, and its intensity here.
     pub lights: Vec<(Vec3, Vec3)>,
     /// Unit direction to the eye.
     pub to_eye: Vec3,
+    /// The frame's axes in the world; u and v may be oblique.
+    pub axes: [Vec3; 3],
 }
 
 /// World-space place and frame of a surface point.
@@ -36,7 +38,7 @@ pub struct SurfacePoint {
 
 impl LocalLights {
     /// The lights at a point seen from `eye`. A surface seen from behind is lit on that side.
-    pub fn at(point: &SurfacePoint, eye: Vec3, lights: &[Light], ambient: Vec3) -> Self {
+    pub fn at(point: &SurfacePoint, eye: Vec3, lights: &[Light], sky: &Sky) -> Self {
         let to_eye = (eye - point.position).normalize_or_zero();
         let normal = point.normal.normalize_or(Vec3::Z);
         let normal = if normal.dot(to_eye) < 0.0 { -normal } else { normal };
@@ -45,9 +47,7 @@ impl LocalLights {
         let local = |w: Vec3| Vec3::new(u.dot(w), v.dot(w), normal.dot(w));
         let lights = lights.iter().map(|light| {
             let (to_light, intensity) = match *light {
-                Light::Directional { to_light, intensity } => {
-                    (to_light.normalize_or_zero(), intensity)
-                }
+                Light::Sun { to_light, intensity, .. } => (to_light.normalize_or_zero(), intensity),
                 Light::Point { position, intensity } => {
                     let way = position - point.position;
                     // The least distance keeps a light on the surface finite.
@@ -56,12 +56,19 @@ impl LocalLights {
             };
             (local(to_light), intensity)
         });
-        Self { ambient, lights: lights.collect(), to_eye: local(to_eye) }
+        let (lights, axes) = (lights.collect(), [u, v, normal]);
+        Self { ambient: sky.irradiance(normal), lights, to_eye: local(to_eye), axes }
     }
 
-    /// What an albedo of 1 is multiplied with under a unit normal.
-    pub fn diffuse(&self, normal: Vec3) -> Vec3 {
-        self.lights.iter().fold(self.ambient, |sum, (to_light, intensity)| {
+    /// What an albedo of 1 is multiplied with under a normal.
+    pub fn diffuse(&self, normal: Vec3, sky: &Sky) -> Vec3 {
+        let ambient = if sky.is_uniform() {
+            self.ambient
+        } else {
+            let [u, v, n] = self.axes;
+            sky.irradiance((u * normal.x + v * normal.y + n * normal.z).normalize_or(n))
+        };
+        self.lights.iter().fold(ambient, |sum, (to_light, intensity)| {
             sum + *intensity * normal.dot(*to_light).max(0.0)
         })
     }

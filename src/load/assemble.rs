@@ -10,7 +10,7 @@ use super::stage::{LoadStage, Report};
 use super::{models, surfaces};
 use crate::decode::open_regular;
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Light, Material, Mesh, Scene};
+use crate::scene::{Camera, Light, Material, Mesh, Scene, Sky};
 use glam::Vec3;
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashSet};
@@ -169,6 +169,6 @@ fn frame(scene: &mut Scene, aspect: f32) {
     scene.camera = Camera::framing(min, max, aspect);
     let [right, up, forward] = scene.camera.axes();
     let to_light = up * 0.8 - right * 0.6 - forward * 0.6;
-    scene.lights = vec![Light::Directional { to_light, intensity: Vec3::splat(0.85) }];
-    scene.ambient = Vec3::splat(0.15);
+    scene.lights = vec![Light::sun(to_light, Vec3::splat(0.85))];
+    scene.sky = Sky::Color(Vec3::splat(0.15));
 }

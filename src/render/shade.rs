@@ -96,7 +96,8 @@ impl<'a> Shader<'a> {
             colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
                 Some(lights) => {
                     // Nothing bends the normal here: it is z in the surface's own frame.
-                    material.diffuse * lights.diffuse(Vec3::Z) + lights.specular(Vec3::Z, material)
+                    material.diffuse * lights.diffuse(Vec3::Z, &self.scene.sky)
+                        + lights.specular(Vec3::Z, material)
                 }
                 None => material.diffuse,
             };
@@ -270,7 +271,7 @@ impl<'a> Shader<'a> {
         if self.traits.asks_for_lights {
             color + specular
         } else {
-            color * lights.diffuse(normal) + specular
+            color * lights.diffuse(normal, &self.scene.sky) + specular
         }
     }
 
@@ -288,7 +289,8 @@ impl<'a> Shader<'a> {
             normal: at(normal),
             tangents: [at(tangent_u), at(tangent_v)],
         };
-        Some(LocalLights::at(&point, self.scene.camera.eye, &self.scene.lights, self.scene.ambient))
+        let Scene { camera, lights, sky, .. } = self.scene;
+        Some(LocalLights::at(&point, camera.eye, lights, sky))
     }
 }
 

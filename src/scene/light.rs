@@ -7,11 +7,14 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
     /// Light from infinitely far away.
-    Directional {
+    Sun {
         /// The direction towards the light; any length above 0.
         to_light: Vec3,
-        /// Linear RGB.
+        /// Linear RGB of all of its disc together, however large that is.
         intensity: Vec3,
+        /// The diameter of its disc in degrees, 0 to 90; 0 casts hard shadows.
+        /// [`Light::SUN_SIZE`] is the real one's.
+        angular_size: f32,
     },
     /// Light from a point, falling off with the square of the distance.
     Point {
@@ -28,9 +31,17 @@ pub(super) fn is_light(rgb: Vec3) -> bool {
 }
 
 impl Light {
+    /// The sun's diameter as it is seen from the earth, in degrees.
+    pub const SUN_SIZE: f32 = 0.53;
+
+    /// A sun as large as the real one.
+    pub fn sun(to_light: Vec3, intensity: Vec3) -> Self {
+        Self::Sun { to_light, intensity, angular_size: Self::SUN_SIZE }
+    }
+
     pub(crate) fn validate(&self) -> Result<(), String> {
         let (place, intensity) = match *self {
-            Self::Directional { to_light, intensity } => (to_light, intensity),
+            Self::Sun { to_light, intensity, .. } => (to_light, intensity),
             Self::Point { position, intensity } => (position, intensity),
         };
         // A comparison with NaN is false.
@@ -40,8 +51,13 @@ impl Light {
         if !is_light(intensity) {
             return Err("its intensity must be within 0 to 1e6".into());
         }
-        if matches!(self, Self::Directional { .. }) && place.length_squared() < 1e-30 {
-            return Err("the direction to the light must not be zero".into());
+        if let Self::Sun { to_light, angular_size, .. } = *self {
+            if to_light.length_squared() < 1e-30 {
+                return Err("the direction to the light must not be zero".into());
+            }
+            if !(0.0..=90.0).contains(&angular_size) {
+                return Err("its size must be within 0 to 90 degrees".into());
+            }
         }
         Ok(())
     }

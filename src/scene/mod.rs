@@ -1,11 +1,13 @@
 //! What is drawn: meshes, materials, a camera and lights. Plain data; the renderer checks it once,
 //! at its border.
 
+pub(crate) mod angle;
 mod builtin;
 mod camera;
 mod light;
 mod material;
 mod mesh;
+mod sky;
 mod whole;
 
 pub use builtin::builtin;
@@ -14,4 +16,5 @@ pub use light::Light;
 pub use material::Material;
 pub use mesh::Mesh;
 pub(crate) use mesh::{MAX_POSITION, MAX_REPEATS};
+pub use sky::{Environment, Sky};
 pub use whole::Scene;

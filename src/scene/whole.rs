@@ -4,6 +4,7 @@ use super::camera::Camera;
 use super::light::{self, Light};
 use super::material::Material;
 use super::mesh::Mesh;
+use super::sky::Sky;
 use crate::error::{Error, Result};
 use glam::Vec3;
 
@@ -18,9 +19,8 @@ pub struct Scene {
     pub camera: Camera,
     /// What lights them under [`Lighting::Lit`](crate::Lighting::Lit).
     pub lights: Vec<Light>,
-    /// Light from everywhere, linear RGB, 0 to 1e6, added to the lights under
-    /// [`Lighting::Lit`](crate::Lighting::Lit).
-    pub ambient: Vec3,
+    /// Light from everywhere, added to the lights. Default: none.
+    pub sky: Sky,
     /// Colour where nothing is hit, linear RGB, 0 to 1e6, and opacity. Default: black and
     /// transparent.
     pub background: [f32; 4],
@@ -46,9 +46,7 @@ impl Scene {
         for (i, light) in self.lights.iter().enumerate() {
             light.validate().map_err(|reason| Error::scene(format!("light {i}"), reason))?;
         }
-        if !light::is_light(self.ambient) {
-            return Err(Error::scene("scene", "ambient must be within 0 to 1e6"));
-        }
+        self.sky.validate().map_err(|reason| Error::scene("scene", reason))?;
         let [r, g, b, opacity] = self.background;
         if !light::is_light(Vec3::new(r, g, b)) || !(0.0..=1.0).contains(&opacity) {
             return Err(Error::scene(

@@ -17,7 +17,7 @@ pub use options::OptionsMut;
 pub enum Lighting {
     /// The filtered albedo is the colour.
     Unlit,
-    /// Ambient, Lambert and Blinn-Phong from the scene's lights.
+    /// Lambert and Blinn-Phong from the scene's sky and lights.
     Lit,
 }
 

@@ -59,7 +59,7 @@ pub(crate) const FORMULAS: &[Choice<Formulas>] = &[
 
 pub(crate) const LIGHTING: &[Choice<Lighting>] = &[
     ("unlit", Lighting::Unlit, "The surface's colour alone"),
-    ("lit", Lighting::Lit, "Ambient, diffuse and highlights"),
+    ("lit", Lighting::Lit, "Sky, diffuse light and highlights"),
 ];
 
 pub(crate) const MSAA: &[Choice<u32>] =

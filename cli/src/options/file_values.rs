@@ -4,6 +4,7 @@
 //! adds the line.
 
 use crate::options::values::{self, check};
+use basrelief::Light;
 use glam::Vec3;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -87,6 +88,16 @@ pub(crate) struct Sun {
     /// Linear RGB.
     #[serde(default = "white")]
     pub(crate) color: Vec3,
+    /// Diameter in degrees.
+    #[serde(default = "real_size")]
+    pub(crate) size: f32,
+}
+
+/// Light from everywhere: one colour, or three in a column.
+impl Spell for [Vec3; 3] {
+    fn parse(text: &str) -> Result<Self, String> {
+        values::sky(text)
+    }
 }
 
 /// Light from a point.
@@ -103,13 +114,18 @@ fn white() -> Vec3 {
     Vec3::ONE
 }
 
+fn real_size() -> f32 {
+    Light::SUN_SIZE
+}
+
 impl Sun {
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
-        values::sun(text).map(|[direction, color]| Self { direction, color })
+        values::sun(text).map(|(direction, color, size)| Self { direction, color, size })
     }
 
     fn check(self) -> Result<Self, String> {
         check::direction(self.direction)?;
+        check::sun_size(self.size)?;
         check::intensity(self.color).map(|_| self)
     }
 }

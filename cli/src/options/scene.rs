@@ -11,7 +11,7 @@ use basrelief::load::{
     self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY,
 };
 use basrelief::texture::Wrap;
-use basrelief::{Camera, Light, Scene, Settings, scene};
+use basrelief::{Camera, Light, Scene, Settings, Sky, scene};
 use clap::Args;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -138,17 +138,18 @@ pub(crate) struct CameraOptions {
 #[command(next_help_heading = "Light and background")]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct LightOptions {
-    /// Light from everywhere, linear [default: the scene's own, 0.15 for an OBJ file]
-    #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true)]
-    #[serde(deserialize_with = "file_values::intensity")]
-    ambient: Option<Vec3>,
+    /// Light from everywhere, linear: one colour R[,G,B], or three, blended by how far a direction
+    /// goes up (+y) [default: the scene's own, 0.15 for an OBJ file]
+    #[arg(long, value_name = "COLOUR|TOP/HORIZON/GROUND", value_parser = Spelt::<[Vec3; 3]>::parse, allow_hyphen_values = true)]
+    sky: Option<Spelt<[Vec3; 3]>>,
     /// Colour where nothing is hit, sRGB: transparent, #rrggbb, R,G,B of 0 to 255 or a name such as
     /// skyblue [default: the scene's own, transparent for an OBJ file]
     #[arg(long, value_name = "COLOUR", value_parser = Spelt::<[f32; 4]>::parse, allow_hyphen_values = true)]
     background: Option<Spelt<[f32; 4]>>,
-    /// Light from far away: the direction towards it, and its linear colour, 1,1,1 if not given;
-    /// may be repeated; takes the place of the scene's own lights
-    #[arg(long, value_name = "X,Y,Z[,R,G,B]", value_parser = Sun::parse, allow_hyphen_values = true)]
+    /// Light from far away: the direction towards it, its linear colour, 1,1,1 if not given, and its
+    /// diameter in degrees, 0.53 if not given; may be repeated; takes the place of the scene's own
+    /// lights
+    #[arg(long, value_name = "X,Y,Z[,R,G,B[,SIZE]]", value_parser = Sun::parse, allow_hyphen_values = true)]
     #[serde(deserialize_with = "file_values::suns", skip_serializing_if = "Vec::is_empty")]
     sun: Vec<Sun>,
     /// Light from a point: its place, and its linear colour at a distance of 1; may be repeated
@@ -161,7 +162,7 @@ impl SceneOptions {
     /// Whether a light is given.
     pub(crate) fn has_lights(&self) -> bool {
         let light = &self.light;
-        !light.sun.is_empty() || !light.point_light.is_empty() || light.ambient.is_some()
+        !light.sun.is_empty() || !light.point_light.is_empty() || light.sky.is_some()
     }
 
     /// Reads or makes the scene and sets what the options say.
@@ -278,10 +279,12 @@ impl CameraOptions {
 impl LightOptions {
     /// Lights that are given take the place of the scene's own.
     fn set(&self, scene: &mut Scene) {
-        let suns = self
-            .sun
-            .iter()
-            .map(|sun| Light::Directional { to_light: sun.direction, intensity: sun.color });
+        let sun = |sun: &Sun| Light::Sun {
+            to_light: sun.direction,
+            intensity: sun.color,
+            angular_size: sun.size,
+        };
+        let suns = self.sun.iter().map(sun);
         let point =
             |light: &PointLight| Light::Point { position: light.position, intensity: light.color };
         let points = self.point_light.iter().map(point);
@@ -289,7 +292,12 @@ impl LightOptions {
         if !given.is_empty() {
             scene.lights = given;
         }
-        scene.ambient = self.ambient.unwrap_or(scene.ambient);
+        if let Some(sky) = &self.sky {
+            let [top, horizon, ground] = sky.value;
+            let is_one = top == horizon && horizon == ground;
+            scene.sky =
+                if is_one { Sky::Color(top) } else { Sky::Gradient { top, horizon, ground } };
+        }
         scene.background = self.background.as_ref().map_or(scene.background, |color| color.value);
     }
 }
@@ -331,14 +339,19 @@ mod tests {
     #[test]
     fn lights_replace_the_scenes_own() {
         let own = Light::Point { position: Vec3::ONE, intensity: Vec3::ONE };
-        let mut scene = Scene { lights: vec![own], ambient: Vec3::ONE, ..Scene::default() };
+        let mut scene = Scene { lights: vec![own], sky: Sky::Color(Vec3::ONE), ..Scene::default() };
         parse("").unwrap().light.set(&mut scene);
-        assert!(scene.lights == [own] && scene.ambient == Vec3::ONE);
+        assert!(scene.lights == [own] && scene.sky == Sky::Color(Vec3::ONE));
         let options =
-            parse("--sun -1,2,3 --point-light 1,2,3,4,5,6 --sun 1,0,0 --ambient 0").unwrap();
+            parse("--sun -1,2,3 --point-light 1,2,3,4,5,6 --sun 1,0,0,1,1,1,2 --sky 0").unwrap();
         assert!(options.has_lights());
         options.light.set(&mut scene);
-        assert!(scene.lights.len() == 3 && scene.ambient == Vec3::ZERO);
+        assert!(scene.lights.len() == 3 && scene.sky == Sky::Color(Vec3::ZERO));
+        let (to_light, intensity) = (Vec3::X, Vec3::ONE);
+        assert_eq!(scene.lights[1], Light::Sun { to_light, intensity, angular_size: 2.0 });
+        parse("--sky 1/0.5,0.4,0.3/0").unwrap().light.set(&mut scene);
+        let (top, horizon) = (Vec3::ONE, Vec3::new(0.5, 0.4, 0.3));
+        assert_eq!(scene.sky, Sky::Gradient { top, horizon, ground: Vec3::ZERO });
     }
 
     #[test]

@@ -9,7 +9,7 @@
 //! height = "brick_height.png"
 //! [camera]                        # --eye, --target, --up, --fov, --near
 //! eye = [3.0, 2.0, 5.0]
-//! [light]                         # --ambient, --background, and lights
+//! [light]                         # --sky, --background, and lights
 //! background = "skyblue"
 //! [[light.sun]]
 //! direction = [1.0, 2.0, 1.0]

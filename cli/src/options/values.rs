@@ -2,7 +2,7 @@
 //! expected. Scene files hold the same values, bounded by the same checks: see `file_values`.
 
 use basrelief::texture::linear_from_srgb8;
-use basrelief::{Horizon, Region};
+use basrelief::{Horizon, Light, Region};
 use glam::Vec3;
 
 /// Width and height in pixels from `1280x720`.
@@ -128,12 +128,31 @@ pub(crate) fn light(text: &str) -> Result<[Vec3; 2], String> {
     }
 }
 
-/// A light whose direction is not zero.
-pub(crate) fn sun(text: &str) -> Result<[Vec3; 2], String> {
-    let [to_light, intensity] = light(text)?;
-    match check::direction(to_light) {
-        Ok(to_light) => Ok([to_light, intensity]),
-        Err(reason) => Err(format!("its direction {reason}")),
+/// A sun: the direction `X,Y,Z` towards it, its linear RGB, 1 where `R,G,B` is left out, and its
+/// diameter in degrees, where `SIZE` is left out that of the real one.
+pub(crate) fn sun(text: &str) -> Result<(Vec3, Vec3, f32), String> {
+    let numbers = numbers(text)?;
+    let (place, rest) =
+        numbers.split_first_chunk().ok_or("is not X,Y,Z, X,Y,Z,R,G,B or X,Y,Z,R,G,B,SIZE")?;
+    let to_light = check::direction(Vec3::from_array(*place))
+        .map_err(|reason| format!("its direction {reason}"))?;
+    let (color, size) = match *rest {
+        [] => (Vec3::ONE, Light::SUN_SIZE),
+        [r, g, b] => (Vec3::new(r, g, b), Light::SUN_SIZE),
+        [r, g, b, size] => (Vec3::new(r, g, b), size),
+        _ => return Err("is not X,Y,Z, X,Y,Z,R,G,B or X,Y,Z,R,G,B,SIZE".into()),
+    };
+    Ok((to_light, check::intensity(color)?, check::sun_size(size)?))
+}
+
+/// A sky: linear RGB from `R,G,B` or one number for all three, or three such colours, `TOP`,
+/// `HORIZON` and `GROUND`, with slashes between them.
+pub(crate) fn sky(text: &str) -> Result<[Vec3; 3], String> {
+    let colors: Result<Vec<Vec3>, String> = text.split('/').map(intensity).collect();
+    match colors?[..] {
+        [color] => Ok([color; 3]),
+        [top, horizon, ground] => Ok([top, horizon, ground]),
+        _ => Err("is not a colour R[,G,B] or three colours TOP/HORIZON/GROUND".into()),
     }
 }
 
@@ -172,6 +191,14 @@ pub(crate) mod check {
 
     pub(crate) fn unit(value: f32) -> Result<f32, String> {
         if (0.0..=1.0).contains(&value) { Ok(value) } else { Err("must be within 0 to 1".into()) }
+    }
+
+    pub(crate) fn sun_size(value: f32) -> Result<f32, String> {
+        if (0.0..=90.0).contains(&value) {
+            Ok(value)
+        } else {
+            Err("its size must be within 0 to 90 degrees".into())
+        }
     }
 
     pub(crate) fn exponent(value: f32) -> Result<f32, String> {

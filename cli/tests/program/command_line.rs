@@ -85,7 +85,9 @@ fn bad_options_are_refused() {
         ("--near -1", "--near"),
         ("--sun 0,0,0", "--sun"),
         ("--point-light 1,2,3,nan,0,0", "--point-light"),
-        ("--ambient -1", "--ambient"),
+        ("--sky -1", "--sky"),
+        ("--sky 1/2", "--sky"),
+        ("--sun 1,1,1,1,1,1,91", "--sun"),
         ("--relief-depth 2", "--relief-depth"),
         ("--max-image-side 0", "--max-image-side"),
         ("--max-triangles 1", "--max-triangles"),
@@ -214,7 +216,7 @@ fn every_option_is_accepted() {
          --msaa 1 --tile 8 --albedo map.png --height map.png --normal map.png --height-sense white-deep --relief-depth 0.1 \
          --normal-y down --wrap mirror --allow-outside --diffuse 0.5 --specular 0.1,0.2,0.3 --shininess 9 --region 0,1,7,6 \
          --max-image-side 64 --max-image-mib 64 --max-triangles 9 --max-textures 9 --crease-angle 30 --eye -1,-1,3 --target -0.1,0,0 --up 0,1,-0.1 --fov 40 --near 0.1 \
-         --sun -1,1,1 --sun 1,1,1,0.5,0.5,0.5 --point-light -1,0,2 --ambient 0.1,0.1,0.2 --background skyblue --threads 1 \
+         --sun -1,1,1 --sun 1,1,1,0.5,0.5,0.5,2 --point-light -1,0,2 --sky 0.1,0.1,0.2 --background skyblue --threads 1 \
          --quiet --repeat 2 --stats stats.json --save-scene kept.toml --json",
     );
 }

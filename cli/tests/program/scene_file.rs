@@ -71,7 +71,7 @@ fov = 50
 
 [light]
 background = "#204060"
-ambient = [0.1, 0.1, 0.1]
+sky = "0.1"
 [[light.sun]]
 direction = [1, 1, 1]
 [[light.point-light]]
@@ -95,7 +95,7 @@ max-textures = 3
     folder.succeeds("model/scene.toml -q -o a.png");
     folder.succeeds(
         "model/two.obj -q -o b.png --albedo model/map.png --relief-depth 0.1 --wrap clamp --eye 0.5,1,2.5 --target 0,0,0 --fov 50 \
-         --background #204060 --ambient 0.1 --sun 1,1,1 --point-light 0,0,2,0.5,0.25,0.125 --size 40x30 --msaa 4 --lighting lit \
+         --background #204060 --sky 0.1 --sun 1,1,1 --point-light 0,0,2,0.5,0.25,0.125 --size 40x30 --msaa 4 --lighting lit \
          --cull --filter trilinear --parallax off --max-textures 3",
     );
     assert!(bytes(&folder, "a.png") == bytes(&folder, "b.png"));
@@ -106,7 +106,7 @@ max-textures = 3
     assert_eq!(image::image_dimensions(folder.path("a.png")).unwrap(), (20, 10));
     folder.succeeds(
         "model/two.obj -q -o b.png --albedo model/map.png --relief-depth 0.1 --wrap clamp --eye 0.5,1,2.5 --target 0,0,0 --fov 70 \
-         --background #204060 --ambient 0.1 --sun 1,1,1 --point-light 0,0,2,0.5,0.25,0.125 --size 20x10 --msaa 4 --lighting lit \
+         --background #204060 --sky 0.1 --sun 1,1,1 --point-light 0,0,2,0.5,0.25,0.125 --size 20x10 --msaa 4 --lighting lit \
          --filter bilinear --parallax off",
     );
     assert!(bytes(&folder, "a.png") == bytes(&folder, "b.png"));
@@ -154,7 +154,7 @@ fn mistakes_are_named_with_file_and_line() {
         ("[camera]\nfov = 180", &["s.toml:2", "fov", "degrees"]),
         ("[camera]\neye = [1, 2]", &["s.toml:2", "eye"]),
         ("[camera]\neye = [1, 2, nan]", &["s.toml:2", "eye"]),
-        ("[light]\nambient = [-1, 0, 0]", &["s.toml:2", "ambient"]),
+        ("[light]\nsky = \"-1\"", &["s.toml:2", "sky"]),
         ("[light]\nbackground = 'nocolour'", &["s.toml:2", "background", "#rrggbb"]),
         ("[[light.sun]]\ndirection = [0, 0, 0]", &["s.toml:", "zero"]),
         ("[[light.sun]]\ncolor = [0, 0, 0]", &["s.toml:1", "direction"]),

@@ -12,6 +12,7 @@ use crate::scene::camera::Camera;
 use crate::scene::light::Light;
 use crate::scene::material::Material;
 use crate::scene::mesh::Mesh;
+use crate::scene::sky::Sky;
 use crate::scene::whole::Scene;
 use crate::texture::{Surface, SurfaceMaps};
 use arch::Arch;
@@ -55,11 +56,8 @@ pub fn builtin() -> Scene {
             near: 0.02,
             ..Camera::default()
         },
-        lights: vec![Light::Directional {
-            to_light: Vec3::new(-0.62, 0.55, 0.56),
-            intensity: Vec3::new(1.15, 1.02, 0.84),
-        }],
-        ambient: Vec3::new(0.26, 0.29, 0.34),
+        lights: vec![Light::sun(Vec3::new(-0.62, 0.55, 0.56), Vec3::new(1.15, 1.02, 0.84))],
+        sky: Sky::Color(Vec3::new(0.26, 0.29, 0.34)),
         background: [0.50, 0.64, 0.80, 1.0],
     }
 }
