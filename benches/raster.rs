@@ -4,7 +4,7 @@
 mod scenes;
 
 use basrelief::geometry::{Geometry, project};
-use basrelief::raster::{Bins, QuadBlock, Rasterizer, TileGrid, hit_counts};
+use basrelief::raster::{Bins, Drawn, QuadBlock, Rasterizer, TileGrid, hit_counts};
 use basrelief::simd::PixelLanes;
 use basrelief::{Frame, Scene, Settings};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -72,7 +72,7 @@ fn draw(criterion: &mut Criterion) {
                 b.iter(|| {
                     rasterizer.draw(
                         black_box(&geometry),
-                        (&scene, &settings),
+                        Drawn { scene: &scene, settings: &settings, group: &|_| 0 },
                         &flat,
                         &|| 0.0,
                         &mut frame,

@@ -14,6 +14,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 pub struct Prepared {
     surface: Arc<Surface>,
     relief: Option<Arc<Relief>>,
+    /// The tables, if the surface has any, for so many MiB.
+    far: Arc<Mutex<Option<(u32, Option<Arc<FarField>>)>>>,
     has_far_field: bool,
 }
 
@@ -23,8 +25,6 @@ struct Relief {
     field: OnceLock<HeightField>,
     cells: OnceLock<HeightCells>,
     loss: LevelLoss,
-    /// The tables, if the surface has any, for so many MiB.
-    far: Mutex<Option<(u32, Option<Arc<FarField>>)>>,
 }
 
 impl Prepared {
@@ -36,15 +36,19 @@ impl Prepared {
                 field: OnceLock::new(),
                 cells: OnceLock::new(),
                 loss: LevelLoss::new(&surface),
-                far: Mutex::default(),
             })
         });
-        Self { surface, relief, has_far_field: true }
+        Self { surface, relief, far: Arc::default(), has_far_field: true }
     }
 
     /// The same surface drawn flat.
     pub fn without_relief(&self) -> Self {
         Self { relief: None, ..self.clone() }
+    }
+
+    /// The same relief in the colours of another surface: what is made of heights is shared.
+    pub(crate) fn recolored(&self, surface: Surface) -> Self {
+        Self { surface: Arc::new(surface), far: Arc::default(), ..self.clone() }
     }
 
     /// The same surface without tables for distant footprints.
@@ -95,15 +99,15 @@ impl Prepared {
 
     /// Tables of at most so many MiB; `None` for a surface that has none.
     pub(super) fn far_field(&self, mib: u32) -> Option<Arc<FarField>> {
-        let far = &self.relief.as_deref().filter(|_| self.has_far_field)?.far;
-        let kept = far.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        self.relief.as_deref().filter(|_| self.has_far_field)?;
+        let kept = self.far.lock().unwrap_or_else(PoisonError::into_inner).clone();
         if let Some((_, far)) = kept.filter(|(kept, _)| *kept == mib) {
             return far;
         }
         // Made without the lock: whoever held it and waited for its tasks could be given one that
         // asks for it. Whoever is last is kept, and all are the same.
         let made = FarField::new(&self.surface, mib).map(Arc::new);
-        *far.lock().unwrap_or_else(PoisonError::into_inner) = Some((mib, made.clone()));
+        *self.far.lock().unwrap_or_else(PoisonError::into_inner) = Some((mib, made.clone()));
         made
     }
 }

@@ -7,8 +7,8 @@ use crate::error::Result;
 use crate::filter::{LevelChoice, Prepared, Scratch};
 use crate::footprint::{Ellipse, Footprint, Footprints};
 use crate::geometry;
-use crate::raster::{Pool, QuadBlock, QuadPair, Rasterizer};
-use crate::render::{PreparedScene, Shader};
+use crate::raster::{Drawn, Pool, QuadBlock, QuadPair, Rasterizer};
+use crate::render::{Ground, PreparedScene, Shader};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
@@ -59,21 +59,22 @@ pub struct Measured {
 pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measured> {
     scene.validate()?;
     settings.validate()?;
-    let is_lit = settings.lighting == Lighting::Lit;
-    let prepared = PreparedScene::new(scene);
+    let mut prepared = PreparedScene::new(scene);
     let asks_levels = matches!(view, View::Mip | View::Horizon);
     if asks_levels {
-        prepared.make_ready(settings);
+        prepared.make_ready(scene, settings);
     }
     let msaa = if view == View::Coverage { settings.msaa } else { 1 };
     let lighting = if view == View::Normal { Lighting::Lit } else { Lighting::Unlit };
+    let asked = settings;
     let settings = Settings { msaa, lighting, ..settings.clone() };
     let pool = Pool::default();
     let shader = Shader::new(scene, &settings, &prepared, &pool);
     let probe = Probe {
+        scene,
+        asked,
         settings: &settings,
         view,
-        is_lit,
         asks_levels,
         prepared: &prepared,
         shader: &shader,
@@ -90,7 +91,9 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
     };
     let geometry = geometry::project(scene, &settings);
     let mut frame = crate::Frame::filled(1, 1, [0.0; 4]);
-    Rasterizer::default().draw(&geometry, (scene, &settings), &shade, &|| 0.0, &mut frame);
+    let group = |triangle| prepared.group(scene, triangle);
+    let drawn = Drawn { scene, settings: &settings, group: &group };
+    Rasterizer::default().draw(&geometry, drawn, &shade, &|| 0.0, &mut frame);
     Ok(pixels.measured(&settings, view))
 }
 
@@ -138,9 +141,11 @@ impl Pixels {
 
 /// Measures pixels.
 struct Probe<'a> {
+    scene: &'a Scene,
+    /// The settings that are asked about; `settings` draw what answers.
+    asked: &'a Settings,
     settings: &'a Settings,
     view: View,
-    is_lit: bool,
     asks_levels: bool,
     prepared: &'a PreparedScene,
     shader: &'a Shader<'a>,
@@ -156,16 +161,17 @@ struct Seen<'a> {
 impl Probe<'_> {
     /// What a block's pairs give, `None` for what is not covered.
     fn values(&self, block: &QuadBlock) -> Vec<[Option<[f32; 3]>; 8]> {
-        let prepared = self.prepared.of_material(block.material, self.settings.parallax);
-        let prepared = prepared.filter(|_| self.view != View::Coverage);
-        let Some(prepared) = prepared else {
+        let index = [block.material, block.group];
+        let ground = self.prepared.ground(self.scene, self.asked, index);
+        let ground = ground.filter(|_| self.view != View::Coverage);
+        let Some(Ground { prepared, is_lit, .. }) = ground else {
             return block.pairs().map(|pair| self.of_plain(&pair)).collect();
         };
         // Made and chosen for the whole block, as frames do it.
         let (mut footprints, mut scratch) = (Vec::<Footprints>::new(), Scratch::default());
         self.shader.footprints(prepared, (block, 0..block.num_pairs()), &mut footprints);
         let choices = if self.asks_levels {
-            self.settings.filter.levels(prepared, &footprints, self.is_lit, &mut scratch)
+            self.settings.filter.levels(prepared, &footprints, is_lit, &mut scratch)
         } else {
             vec![Default::default(); footprints.len()]
         };

@@ -8,8 +8,12 @@
 //! shorter than one it is: `s' = f' s`, `f' = |n| / (|n| + s (1 - |n|))`, with the lobe's height
 //! scaled by `f = (1 + s') / (1 + s)` (Toksvig 2005, "Mipmapping normal maps").
 
+mod bake;
+
 use crate::scene::{Light, Material, Sky};
 use glam::Vec3;
+
+pub use bake::{Beam, TextureFrame, baked};
 
 /// The lights as one place of a surface sees them, in the frame of its texture: x along u, y along
 /// v, z off the surface.

@@ -1,14 +1,16 @@
-//! The quads of one material in a block of the screen, which are shaded together.
+//! The quads of one material and group in a block of the screen, which are shaded together.
 
 use super::gather::SeenQuad;
 use super::quad::{AttributePlanes, QuadPair};
 
-/// What a block of 16x16 pixels sees of one material: each triangle's quads, row by row of each 8x8
+/// What a block of 16x16 pixels sees of one material and group: each triangle's quads, row by row of each 8x8
 /// pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadBlock<'a> {
     /// Index of the material.
     pub material: usize,
+    /// Number of the [group](super::Drawn::group).
+    pub group: usize,
     /// Column and row of the tile's upper left pixel.
     pub(super) tile: [i32; 2],
     pub(super) quads: &'a [SeenQuad],
@@ -30,7 +32,7 @@ impl<'a> QuadBlock<'a> {
     /// One of [`Self::pairs`].
     #[inline(always)]
     pub fn pair(&self, index: usize) -> QuadPair<'a> {
-        let Self { material, tile, planes, quads } = *self;
+        let Self { material, tile, planes, quads, .. } = *self;
         let first = &quads[2 * index];
         // A lone quad is paired with itself: its second half computes on valid planes, unseen.
         let (second, coverage) = match quads.get(2 * index + 1) {

@@ -74,7 +74,20 @@ pub fn draw(
     let shade = |block: &QuadBlock, colors: &mut Vec<_>| {
         colors.extend(block.pairs().map(|pair| shade(&pair)));
     };
-    Rasterizer::default().draw(geometry, (scene, settings), &shade, &|| 0.0, frame)
+    let drawn = Drawn { scene, settings, group: &|_| 0 };
+    Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, frame)
+}
+
+/// What is drawn, and how.
+#[derive(Clone, Copy)]
+pub struct Drawn<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The settings.
+    pub settings: &'a Settings,
+    /// A number for each triangle, by the index of its mesh and in it: quads of one material and
+    /// one number are shaded together.
+    pub group: &'a (dyn Fn([u32; 2]) -> u32 + Sync),
 }
 
 impl Rasterizer {
@@ -85,7 +98,7 @@ impl Rasterizer {
     pub fn draw<P: Pixel>(
         &mut self,
         geometry: &Geometry,
-        (scene, settings): (&Scene, &Settings),
+        Drawn { scene, settings, group }: Drawn,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
         clock: &(dyn Fn() -> f64 + Sync),
         frame: &mut Frame<P>,
@@ -102,7 +115,7 @@ impl Rasterizer {
         }
         // Paint the tiles in parallel. Only times and counts come back to be summed, so the order
         // in which threads end shows nowhere in the picture.
-        let painter = Painter { geometry, scene, settings, grid, bins: &self.bins, clock };
+        let painter = Painter { geometry, scene, settings, group, grid, bins: &self.bins, clock };
         let scratches = &self.scratches;
         let mut rows = rows_by_tile(frame, &grid);
         let tiles = rows
@@ -142,6 +155,7 @@ struct Painter<'a> {
     geometry: &'a Geometry,
     scene: &'a Scene,
     settings: &'a Settings,
+    group: &'a (dyn Fn([u32; 2]) -> u32 + Sync),
     grid: TileGrid,
     bins: &'a Bins,
     clock: &'a (dyn Fn() -> f64 + Sync),
@@ -216,25 +230,26 @@ impl Painter<'_> {
 
     /// Makes the attribute planes of the triangles seen.
     fn find_planes(&self, scratch: &mut Scratch) {
-        let Scratch { list, quads, slots, planes, triangles, materials, .. } = scratch;
+        let Scratch { list, quads, slots, planes, triangles, grounds, .. } = scratch;
         // Mark the triangles that are seen; hidden ones get no planes.
         slots.clear();
         slots.resize(list.len(), NONE);
         quads.iter().for_each(|quad| slots[quad.triangle as usize] = 0);
         triangles.clear();
-        materials.clear();
+        grounds.clear();
         // In the list's order, neighbours in the mesh are neighbours here and find their vertices
         // in the cache.
         for (slot, &index) in slots.iter_mut().zip(list.iter()).filter(|(slot, _)| **slot != NONE) {
             *slot = triangles.len() as u32;
             let ScreenTriangle { mesh, triangle, .. } = *self.geometry.triangle(index);
             triangles.push([mesh, triangle]);
-            materials.push(self.scene.meshes[mesh as usize].material as u32);
+            let material = self.scene.meshes[mesh as usize].material as u32;
+            grounds.push([material, (self.group)([mesh, triangle])]);
         }
         // From here on a quad names its triangle by the slot of its planes.
         for quad in quads.iter_mut() {
             quad.triangle = slots[quad.triangle as usize];
-            quad.material = materials[quad.triangle as usize];
+            quad.ground = grounds[quad.triangle as usize];
         }
         // Never shrunk, so that the boxes of lit planes are there for the next tile.
         if planes.len() < triangles.len() {
@@ -260,19 +275,12 @@ impl Painter<'_> {
         // The list goes block by block, so each block is one run of it.
         for block in quads.chunk_by_mut(|a, b| block_of(a) == block_of(b)) {
             // The stable sort keeps the order of places and triangles.
-            block.sort_by_key(|quad| quad.material);
-            for quads in block.chunk_by(|a, b| a.material == b.material) {
+            block.sort_by_key(|quad| quad.ground);
+            for quads in block.chunk_by(|a, b| a.ground == b.ground) {
                 colors.clear();
                 let start = (self.clock)();
-                shade(
-                    &QuadBlock {
-                        material: quads[0].material as usize,
-                        tile: rect.min,
-                        quads,
-                        planes,
-                    },
-                    colors,
-                );
+                let [material, group] = quads[0].ground.map(|index| index as usize);
+                shade(&QuadBlock { material, group, tile: rect.min, quads, planes }, colors);
                 shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {
                     // A pair of whole quads is stored; where others may add their share, it is

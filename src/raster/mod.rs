@@ -28,7 +28,7 @@ mod tile;
 
 pub use bin::Bins;
 pub use block::QuadBlock;
-pub use draw::{RasterStats, Rasterizer, draw};
+pub use draw::{Drawn, RasterStats, Rasterizer, draw};
 pub use edge::{BLOCK, Edges, Rect, Row};
 pub use grid::{SHADED_BLOCK, TileGrid};
 pub use overdraw::hit_counts;

@@ -19,8 +19,8 @@ pub(super) struct Scratch {
     pub(super) planes: Vec<AttributePlanes>,
     /// Mesh of each slot, and the triangle's index in it.
     pub(super) triangles: Vec<[u32; 2]>,
-    /// Material of each slot.
-    pub(super) materials: Vec<u32>,
+    /// Material and group of each slot.
+    pub(super) grounds: Vec<[u32; 2]>,
     /// Colours of the pairs of a block.
     pub(super) colors: Vec<[PixelLanes; 3]>,
     /// The tile's pixels.

@@ -16,6 +16,7 @@ mod march;
 mod maxima;
 mod patch;
 pub mod seen;
+mod shadow;
 mod walk;
 
 pub use displacement::{MAX_SLOPE, displacement, finite};
@@ -23,3 +24,4 @@ pub use height_cells::{CellRays, HeightCells};
 pub use height_field::HeightField;
 pub use level_loss::LevelLoss;
 pub use march::{ViewRays, march, march_all};
+pub use shadow::LitParts;

@@ -7,16 +7,17 @@
 //!    lie in the texture, `filter` finds their texels, `light` shades them.
 //! 4. `raster` adds the colours up to pixels.
 
+mod baked;
 mod prepared;
 mod shade;
 
-pub(crate) use prepared::PreparedScene;
+pub(crate) use prepared::{Ground, PreparedScene};
 pub(crate) use shade::{ShadeScratch, Shader};
 
 use crate::error::Result;
 use crate::frame::{Frame, Pixel};
 use crate::geometry::Geometry;
-use crate::raster::{Pool, QuadBlock, Rasterizer, TileGrid};
+use crate::raster::{Drawn, Pool, QuadBlock, Rasterizer, TileGrid};
 use crate::scene::{Camera, Scene};
 use crate::settings::{Region, Settings};
 
@@ -88,7 +89,7 @@ impl Renderer {
     pub fn set_settings(&mut self, settings: Settings) -> Result<()> {
         // Checked first: settings that fail leave the renderer as it was.
         settings.validate()?;
-        self.prepared.make_ready(&settings);
+        self.prepared.make_ready(&self.scene, &settings);
         self.settings = settings;
         Ok(())
     }
@@ -100,6 +101,8 @@ impl Renderer {
     pub fn set_camera(&mut self, camera: Camera) -> Result<()> {
         camera.validate()?;
         self.scene.camera = camera;
+        // It may see other sides of flat pieces.
+        self.prepared.make_ready(&self.scene, &self.settings);
         Ok(())
     }
 
@@ -155,7 +158,9 @@ impl Renderer {
         let projected = clock();
         let shader = Shader::new(scene, settings, prepared, pool);
         let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
-        let counts = rasterizer.draw(geometry, (scene, settings), &shade, clock, frame);
+        let group = |triangle| prepared.group(scene, triangle);
+        let drawn = Drawn { scene, settings, group: &group };
+        let counts = rasterizer.draw(geometry, drawn, &shade, clock, frame);
         if let Some(region) = settings.region {
             // The tiles cover whole blocks, which begin a few pixels before the region.
             let [x, y] = TileGrid::new(settings).area.min.map(|v| v as u32);

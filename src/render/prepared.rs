@@ -1,7 +1,8 @@
 //! The prepared surface of each material.
 
+use super::baked::Baked;
 use crate::filter::Prepared;
-use crate::scene::Scene;
+use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::texture::Surface;
 use rayon::prelude::*;
@@ -20,6 +21,17 @@ pub(crate) struct PreparedScene {
     flat: Vec<Prepared>,
     /// The surface of each material that has one.
     of_material: Vec<Option<usize>>,
+    /// Lit for good, with relief or without; `None` where lights are evaluated place by place.
+    baked: Option<(bool, Baked)>,
+}
+
+/// What all pixels of a block lie on.
+#[derive(Clone, Copy)]
+pub(crate) struct Ground<'a> {
+    pub(crate) material: &'a Material,
+    pub(crate) prepared: &'a Prepared,
+    /// Whether its colours are yet to be lit.
+    pub(crate) is_lit: bool,
 }
 
 impl PreparedScene {
@@ -58,18 +70,50 @@ impl PreparedScene {
             })
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
-        Self { surfaces, flat, of_material }
+        Self { surfaces, flat, of_material, baked: None }
     }
 
-    /// Makes what frames with these settings need, so that no frame has to wait for it.
-    pub(crate) fn make_ready(&self, settings: &Settings) {
+    /// Makes what frames of the scene with these settings need, so that no frame has to wait for
+    /// it.
+    pub(crate) fn make_ready(&mut self, scene: &Scene, settings: &Settings) {
+        let is_lit = settings.lighting == Lighting::Lit;
+        // The truth lights each of its samples.
+        let samples = settings.filter.traits().samples;
+        if is_lit && !samples.is_some_and(|samples| samples.is_lit_apart) {
+            let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
+            let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
+            baked.light(scene, self, settings.parallax);
+            self.baked = Some((settings.parallax, baked));
+        } else {
+            self.baked = None;
+        }
         // Frames without relief draw the flat surfaces, which ask for none of this.
         if settings.parallax {
-            let is_lit = settings.lighting == Lighting::Lit;
-            self.surfaces
-                .par_iter()
-                .for_each(|prepared| prepared.make_ready(&settings.filter, is_lit));
+            let baked = self.baked.iter().flat_map(|(_, baked)| baked.surfaces());
+            let ready = self.surfaces.iter().map(|surface| (surface, is_lit));
+            let ready: Vec<_> = ready.chain(baked.map(|surface| (surface, false))).collect();
+            ready
+                .into_par_iter()
+                .for_each(|(surface, is_lit)| surface.make_ready(&settings.filter, is_lit));
         }
+    }
+
+    /// The group in which a triangle is shaded, by the index of its mesh and in it.
+    pub(crate) fn group(&self, scene: &Scene, triangle: [u32; 2]) -> u32 {
+        self.baked.as_ref().map_or(0, |(_, baked)| baked.group(scene, triangle))
+    }
+
+    /// What a block lies on; `None` for a material without a surface.
+    pub(crate) fn ground<'a>(
+        &'a self,
+        scene: &'a Scene,
+        settings: &Settings,
+        [material, group]: [usize; 2],
+    ) -> Option<Ground<'a>> {
+        let baked = self.baked.as_ref().and_then(|(_, baked)| baked.of_group(group));
+        let prepared = baked.or_else(|| self.of_material(material, settings.parallax))?;
+        let is_lit = settings.lighting == Lighting::Lit && baked.is_none();
+        Some(Ground { material: &scene.materials[material], prepared, is_lit })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

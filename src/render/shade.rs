@@ -1,6 +1,6 @@
 //! The colours of a block of quads: footprints, filter, light.
 
-use super::prepared::PreparedScene;
+use super::prepared::{Ground, PreparedScene};
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Scratch, Traits, Work};
 use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::light::{LocalLights, SurfacePoint};
@@ -42,13 +42,6 @@ pub(crate) struct ShadeScratch {
     filtered: Vec<Filtered>,
 }
 
-/// What all pixels of a block lie on.
-#[derive(Clone, Copy)]
-struct Ground<'a> {
-    material: &'a Material,
-    prepared: &'a Prepared,
-}
-
 impl<'a> Shader<'a> {
     pub(crate) fn new(
         scene: &'a Scene,
@@ -70,12 +63,11 @@ impl<'a> Shader<'a> {
 
     /// Appends the linear colours of a block's pairs; those of helper lanes are anything.
     pub(super) fn shade(&self, block: &QuadBlock, colors: &mut Colors) {
-        let material = &self.scene.materials[block.material];
-        let Some(prepared) = self.prepared.of_material(block.material, self.settings.parallax)
-        else {
+        let index = [block.material, block.group];
+        let Some(ground) = self.prepared.ground(self.scene, self.settings, index) else {
+            let material = &self.scene.materials[block.material];
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
-        let ground = Ground { material, prepared };
         let mut scratch = self.pool.take();
         if let Some(samples) = &self.traits.samples {
             return colors.extend(
@@ -118,7 +110,7 @@ impl<'a> Shader<'a> {
         // Find where the pixels lie in the texture.
         self.footprints(ground.prepared, (block, pairs.clone()), footprints);
         // List the lights of covered pixels alone, pair by pair and lane by lane.
-        if self.is_lit() {
+        if ground.is_lit {
             let pairs = pairs.clone().map(|index| block.pair(index));
             lights.extend(pairs.flat_map(|pair| {
                 pair.covered()
@@ -130,7 +122,7 @@ impl<'a> Shader<'a> {
         filtered.resize(pairs.len(), Filtered::default());
         let batch = Batch { pixels: footprints, lights, is_alone: false };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
-        if self.is_lit() {
+        if ground.is_lit {
             // Light the means; the lights come in the order in which they were listed.
             let mut lights = lights.iter();
             colors.extend(footprints.iter().zip(filtered.iter()).map(|(pixels, filtered)| {
@@ -225,11 +217,13 @@ impl<'a> Shader<'a> {
                 let (x, y) = (dx + center_x, dy + center_y);
                 let planes = pair.planes[lane / 4];
                 let rays = self.rays(ground, planes, ([x, y], num_samples), &pixels.lane(lane));
-                lights.extend(rays.covered().filter_map(|i| {
-                    let own = [x.as_array()[i], y.as_array()[i]];
-                    let place = if is_lit_apart { own } else { [center_x, center_y] };
-                    self.lights_at(pair, lane, place)
-                }));
+                if ground.is_lit {
+                    lights.extend(rays.covered().filter_map(|i| {
+                        let own = [x.as_array()[i], y.as_array()[i]];
+                        let place = if is_lit_apart { own } else { [center_x, center_y] };
+                        self.lights_at(pair, lane, place)
+                    }));
+                }
                 footprints.push(rays);
             }
         }

@@ -117,6 +117,11 @@ impl Rows {
         all
     }
 
+    /// What lies beyond the edges.
+    pub(crate) fn wrap(&self) -> Wrap {
+        self.wrap
+    }
+
     /// Texels a row before the pattern wraps.
     pub(crate) fn width(&self) -> usize {
         self.width
@@ -135,6 +140,22 @@ impl Rows {
         std::array::from_fn(
             |plane| if plane < self.num_planes { row[plane * stride + x] } else { 0 },
         )
+    }
+
+    /// The packed texels of a stored row.
+    pub(crate) fn texels(&self, y: usize) -> impl Iterator<Item = PackedTexel> {
+        let row = &self.words[y * self.pitch()..][..self.pitch()];
+        (self.lead()..self.lead() + self.width).map(move |x| {
+            std::array::from_fn(|plane| {
+                if plane < self.num_planes { row[plane * self.stride() + x] } else { 0 }
+            })
+        })
+    }
+
+    /// The normals of eight texels of a stored row, the first in column `x`; `None` without.
+    pub(crate) fn normals(&self, x: usize, y: usize) -> Option<u32x8> {
+        let start = y * self.pitch() + 2 * self.stride() + self.lead() + x;
+        self.has_normals().then(|| Self::run(&self.words, start))
     }
 
     /// The words of a row of the endless pattern, all planes.

@@ -5,6 +5,7 @@ use super::rows::PackedTexel;
 use super::wrap::Wrap;
 use super::{ColorImage, HeightImage, NormalImage, pyramid, resample};
 use crate::error::{Error, Result};
+use rayon::prelude::*;
 
 /// What a [`Surface`] is made from. Maps may differ in size; all are brought to the largest width
 /// and height.
@@ -109,6 +110,44 @@ impl Surface {
             }
         });
         Self { levels: levels.collect(), ..*self }
+    }
+
+    /// The surface with other colours on its base level, and their means on the levels above:
+    /// `color` gives the linear RGB, 0 or more, of the texel at a column and row from what it was.
+    /// Heights stay, and normals if they are wanted.
+    pub(crate) fn with_colors(
+        &self,
+        keep_normals: bool,
+        color: impl Fn(usize, usize, [f32; 3]) -> [f32; 3] + Sync,
+    ) -> Self {
+        let [width, height] = self.base().size();
+        let rows = self.base().rows(false);
+        let to_linear = self.color_scale / FULL_F32;
+        let mut colors = vec![[0.0_f32; 3]; width * height];
+        let brightest = colors.par_chunks_exact_mut(width).enumerate().map(|(y, colors)| {
+            let texels = rows.texels(y);
+            colors.iter_mut().zip(texels).enumerate().fold(0.0_f32, |most, (x, (to, [a, b, _]))| {
+                let stored = [a & 0xffff, a >> 16, b & 0xffff];
+                *to = color(x, y, stored.map(|c| c as f32 * to_linear));
+                to.iter().fold(most, |most, c| most.max(*c))
+            })
+        });
+        // Scaled to the brightest, so that a bright sun keeps its bits; a maximum is the same in
+        // any order.
+        let color_scale = brightest.reduce(|| 0.0, f32::max).max(f32::MIN_POSITIVE);
+        let to_stored = FULL_F32 / color_scale;
+        let mut texels = vec![PackedTexel::default(); width * height];
+        texels.par_chunks_exact_mut(width).enumerate().for_each(|(y, texels)| {
+            let old = rows.texels(y).zip(&colors[y * width..]);
+            for (texel, ([_, b, normal], color)) in texels.iter_mut().zip(old) {
+                let [red, green, blue] = color.map(|c| ((c * to_stored + 0.5) as u32).min(FULL));
+                *texel = [red | green << 16, blue | b & 0xffff_0000, normal];
+            }
+        });
+        let num_planes = if keep_normals && self.has_normals() { 3 } else { 2 };
+        // A mirrored pattern is stored with its mirror images, each lit as it lies.
+        let levels = pyramid::build(texels, [width, height], self.wrap, num_planes);
+        Self { levels, color_scale, ..*self }
     }
 
     /// Mip levels, the finest first; the last holds one texel.

@@ -1,0 +1,198 @@
+//! Light baked into a surface's colours.
+//!
+//! What a matte texel sends out does not depend on the eye: `a E`, its albedo times
+//!
+//! ```text
+//! E = sum over beams of I max(0, n.l) V
+//! ```
+//!
+//! with `V` the part of the texel that the beam reaches over the relief. So a lit picture is the
+//! unlit one of another surface, whose colours are `a E`: every filter, near and far, serves as it
+//! is, and where the eye and the light see the same texels they are told apart texel by texel. Mip
+//! levels are those of the product; a mean of `V` alone would light what nobody sees.
+//!
+//! It takes one direction of each beam over the whole surface: for flat pieces of meshes, under
+//! suns and skies.
+
+use crate::relief::{LitParts, MAX_SLOPE};
+use crate::scene::{Light, Sky, angle};
+use crate::simd::TexelLanes;
+use crate::texture::{Level, Surface, unpack_normals};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Directions that the sky is seen in, over the half space above a polygon: each stands for the
+/// same share of what lights it.
+const SKY_DIRECTIONS: usize = 64;
+
+/// Points of a sun's disc for each half degree of its size, and the most of them. A shadow of the
+/// real sun goes in so many steps from light to dark, each of which is as wide as what cuts it off
+/// at the texels.
+const SUN_POINTS: [f32; 2] = [16.0, 64.0];
+
+/// The frame of a texture on a flat piece of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureFrame {
+    /// dP/du and dP/dv, in world units a repeat.
+    pub tangents: [Vec3; 2],
+    /// Unit normal on the side that is seen.
+    pub normal: Vec3,
+}
+
+/// Light from one direction, as a texture sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beam {
+    /// Unit direction to the light: along u, along v, off the surface.
+    pub to_light: Vec3,
+    /// Repeats that light moves along the texture for each repeat that it goes down.
+    pub slope: [f32; 2],
+    /// Linear RGB; a white texel that faces 1 is white.
+    pub intensity: Vec3,
+}
+
+impl TextureFrame {
+    /// A direction as the axes see it, u and v of unit length: what normals are held against.
+    fn local(&self, direction: Vec3) -> Vec3 {
+        let [u, v] = self.tangents.map(|t| {
+            let t = t - self.normal * t.dot(self.normal);
+            t.normalize_or_zero()
+        });
+        Vec3::new(u.dot(direction), v.dot(direction), self.normal.dot(direction))
+    }
+
+    /// Light from a unit direction; `None` from behind the surface.
+    fn beam(&self, to_light: Vec3, intensity: Vec3) -> Option<Beam> {
+        let [u, v] = self.tangents;
+        // Cramer's rule, as for views: to_light = alpha U + beta V + up s N.
+        let across = u.cross(v);
+        let volume = self.normal.dot(across);
+        let up = across.dot(to_light) / (across.length().sqrt() * volume);
+        let local = self.local(to_light);
+        if local.z <= 0.0 || intensity == Vec3::ZERO {
+            return None;
+        }
+        let along = [v.cross(self.normal), self.normal.cross(u)].map(|w| w.dot(to_light) / volume);
+        let slope = along.map(|along| -along / up.abs());
+        let steepness = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+        // As views are, so that no walk is longer than what they walk.
+        let scale = if steepness > MAX_SLOPE { MAX_SLOPE / steepness } else { 1.0 };
+        let slope = slope.map(|slope| slope * scale);
+        let is_finite = slope.iter().all(|slope| slope.is_finite());
+        Some(Beam { to_light: local, slope: if is_finite { slope } else { [0.0; 2] }, intensity })
+    }
+
+    /// The beams of suns and a sky on a surface with this frame; `None` where a light comes from
+    /// another direction at each place.
+    pub fn beams(&self, lights: &[Light], sky: &Sky) -> Option<Vec<Beam>> {
+        let mut beams = Vec::new();
+        for light in lights {
+            let Light::Sun { to_light, intensity, angular_size } = *light else { return None };
+            beams.extend(self.sun(to_light.normalize_or_zero(), intensity, angular_size));
+        }
+        beams.extend(self.sky(sky));
+        Some(beams)
+    }
+
+    /// Beams from points spread evenly over a sun's disc.
+    fn sun(&self, to_sun: Vec3, intensity: Vec3, degrees: f32) -> Vec<Beam> {
+        let [per_half, most] = SUN_POINTS;
+        let num = ((degrees * 2.0 * per_half).ceil()).clamp(1.0, most) as usize;
+        let [x, y] = <[Vec3; 2]>::from(to_sun.any_orthonormal_pair());
+        let [cos, sin] = angle::cos_sin(f64::from(degrees) * (0.5 / 360.0));
+        let radius = (sin / cos) as f32;
+        let beam = |[cos, sin]: [f32; 2], r: f32| {
+            let to_light = (to_sun + (x * cos + y * sin) * (r * radius)).normalize_or_zero();
+            self.beam(to_light, intensity / num as f32)
+        };
+        spiral(num).filter_map(|(turn, share)| beam(turn, share.sqrt())).collect()
+    }
+
+    /// Beams from all over the sky. Directions lie as densely as their light counts on the polygon;
+    /// one that is `cos` off it stands for `1 / cos` of what a texel sees that faces it.
+    fn sky(&self, sky: &Sky) -> Vec<Beam> {
+        let [x, y] = <[Vec3; 2]>::from(self.normal.any_orthonormal_pair());
+        let beam = |[cos, sin]: [f32; 2], share: f32| {
+            let up = (1.0 - share).sqrt();
+            let to_light = (x * cos + y * sin) * share.sqrt() + self.normal * up;
+            let intensity = sky.radiance(to_light) * (1.0 / (SKY_DIRECTIONS as f32 * up));
+            self.beam(to_light, intensity)
+        };
+        spiral(SKY_DIRECTIONS).filter_map(|(turn, share)| beam(turn, share)).collect()
+    }
+}
+
+/// The surface lit by beams, its normals kept where highlights will want them.
+pub fn baked(surface: &Surface, beams: &[Beam], keep_normals: bool) -> Surface {
+    let level = surface.base();
+    let [width, height] = level.size();
+    let mut sums = [Sums::new([width, height]), Sums::new([height, width])];
+    for beam in beams {
+        let displacement = beam.slope.map(|slope| slope * surface.relief_depth());
+        let lit = LitParts::new(level, displacement);
+        sums[usize::from(lit.is_turned)].add(level, beam, &lit);
+    }
+    let [along_u, along_v] = &sums;
+    surface.with_colors(keep_normals, |x, y, albedo| {
+        std::array::from_fn(|c| albedo[c] * (along_u.at(x, y)[c] + along_v.at(y, x)[c]))
+    })
+}
+
+/// What lights a white surface at each texel, row by row.
+struct Sums {
+    width: usize,
+    /// A row's reds, greens and blues, in whole vectors.
+    lanes: Vec<[TexelLanes; 3]>,
+}
+
+impl Sums {
+    fn new([width, height]: [usize; 2]) -> Self {
+        let lanes = vec![[TexelLanes::ZERO; 3]; width.div_ceil(8) * height];
+        Self { width, lanes }
+    }
+
+    /// Adds a beam's light.
+    fn add(&mut self, level: &Level, beam: &Beam, lit: &LitParts) {
+        let rows = level.rows(lit.is_turned);
+        let pitch = self.width.div_ceil(8);
+        let [x, y, z] = beam.to_light.to_array();
+        self.lanes.par_chunks_exact_mut(pitch).enumerate().for_each_init(
+            Vec::new,
+            |parts, (row, sums)| {
+                lit.row(row, parts);
+                parts.resize(pitch * 8, 0.0);
+                for (i, (sums, parts)) in sums.iter_mut().zip(parts.chunks_exact(8)).enumerate() {
+                    let cos = match rows.normals(i * 8, row) {
+                        Some(words) => {
+                            let [nx, ny, nz] = unpack_normals(words);
+                            (nx * x + ny * y + nz * z).fast_max(TexelLanes::ZERO)
+                        }
+                        None => TexelLanes::splat(z),
+                    };
+                    let parts: [f32; 8] = parts.try_into().expect("eight");
+                    let lit = cos * TexelLanes::new(parts);
+                    for (sum, intensity) in sums.iter_mut().zip(beam.intensity.to_array()) {
+                        *sum += lit * intensity;
+                    }
+                }
+            },
+        );
+    }
+
+    fn at(&self, x: usize, y: usize) -> [f32; 3] {
+        self.lanes[y * self.width.div_ceil(8) + x / 8].map(|lanes| lanes.as_array()[x % 8])
+    }
+}
+
+/// Points of a disc (Vogel 1979), each with the same area: the direction from the middle, and the
+/// share of the disc that is nearer to it.
+fn spiral(num: usize) -> impl Iterator<Item = ([f32; 2], f32)> {
+    // Cosine and sine of the golden angle, pi (3 - sqrt 5): turned by products, since sines of the
+    // platform differ from machine to machine.
+    const TURN: [f64; 2] = [-0.737_368_878_078_319_8, 0.675_490_294_261_523_7];
+    let mut turn = [1.0_f64, 0.0];
+    (0..num).map(move |i| {
+        let [x, y] = turn;
+        turn = [x * TURN[0] - y * TURN[1], x * TURN[1] + y * TURN[0]];
+        ([x as f32, y as f32], (i as f32 + 0.5) / num as f32)
+    })
+}
