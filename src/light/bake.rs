@@ -156,9 +156,9 @@ impl Sums {
         let pitch = self.width.div_ceil(8);
         let [x, y, z] = beam.to_light.to_array();
         self.lanes.par_chunks_exact_mut(pitch).enumerate().for_each_init(
-            Vec::new,
-            |parts, (row, sums)| {
-                lit.row(row, parts);
+            Default::default,
+            |(lines, parts): &mut (Vec<f32>, Vec<f32>), (row, sums)| {
+                lit.row(row, lines, parts);
                 parts.resize(pitch * 8, 0.0);
                 for (i, (sums, parts)) in sums.iter_mut().zip(parts.chunks_exact(8)).enumerate() {
                     let cos = match rows.normals(i * 8, row) {
