@@ -23,7 +23,8 @@ pub(super) fn build(
         let rows = Rows::new(width, height, wrap, num_planes, &texels);
         let smaller = size.map(|n| (n / 2).max(1));
         // The finer texels go before their turned copy comes.
-        texels = if size == [1, 1] { Vec::new() } else { halve(&texels, size, smaller) };
+        texels =
+            if size == [1, 1] { Vec::new() } else { halve(&texels, size, smaller, num_planes) };
         levels.push(Level::new(rows, if wrap == Wrap::Mirror { 2 } else { 1 }));
         if size == [1, 1] {
             return levels;
@@ -42,7 +43,15 @@ pub(crate) fn box_taps(i: usize, num_from: usize, num_to: usize) -> Vec<(usize, 
         .collect()
 }
 
-fn halve(texels: &[PackedTexel], [w, h]: [usize; 2], [to_w, to_h]: [usize; 2]) -> Vec<PackedTexel> {
+fn halve(
+    texels: &[PackedTexel],
+    [w, h]: [usize; 2],
+    [to_w, to_h]: [usize; 2],
+    num_planes: usize,
+) -> Vec<PackedTexel> {
+    if [w, h] == [2 * to_w, 2 * to_h] {
+        return halve_even(texels, w, num_planes);
+    }
     let columns: Vec<_> = (0..to_w).map(|x| box_taps(x, w, to_w)).collect();
     let mut halved = vec![[0; 3]; to_w * to_h];
     halved.par_chunks_exact_mut(to_w).enumerate().for_each(|(y, row)| {
@@ -58,6 +67,35 @@ fn halve(texels: &[PackedTexel], [w, h]: [usize; 2], [to_w, to_h]: [usize; 2]) -
             *texel = pack(sums);
         }
     });
+    halved
+}
+
+/// What [`halve`] makes of even sides, several times as fast: each texel is the mean of four.
+fn halve_even(texels: &[PackedTexel], w: usize, num_planes: usize) -> Vec<PackedTexel> {
+    let mut halved = vec![[0; 3]; texels.len() / 4];
+    halved.par_chunks_exact_mut(w / 2).zip(texels.par_chunks_exact(2 * w)).for_each(
+        |(to, from)| {
+            let (below, above) = from.split_at(w);
+            let pairs = below.chunks_exact(2).zip(above.chunks_exact(2));
+            for (texel, (below, above)) in to.iter_mut().zip(pairs) {
+                let four = [below[0], below[1], above[0], above[1]];
+                // Numbers of fifteen bits, whose sums are exact.
+                let mean = |plane: usize| {
+                    let sum =
+                        |shift: u32| four.iter().map(|t| t[plane] >> shift & 0xffff).sum::<u32>();
+                    (sum(0) + 2) / 4 | (sum(16) + 2) / 4 << 16
+                };
+                *texel = [mean(0), mean(1), 0];
+                if num_planes == 3 {
+                    let sum = four.iter().fold([0.0; 3], |sum: [f32; 3], texel| {
+                        let normal = unpack_normal(texel[2]);
+                        std::array::from_fn(|i| sum[i] + 0.25 * normal[i])
+                    });
+                    texel[2] = pack_normal(sum);
+                }
+            }
+        },
+    );
     halved
 }
 
