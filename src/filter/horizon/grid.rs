@@ -9,7 +9,7 @@
 
 use super::pixels::PixelOnLines;
 use super::sweep_frame::SweepFrame;
-use crate::simd::{LineLanes, TexelLanes};
+use crate::simd::TexelLanes;
 
 /// Most lines of a grid.
 pub(super) const MOST_LINES: usize = 64;
@@ -40,8 +40,8 @@ pub(super) struct Grid<'a> {
     pub(super) begin: f32,
     pub(super) step: f32,
     pub(super) num_bins: usize,
-    /// 1; or 2 where lines are read half way between rows, too.
-    pub(super) steps_per_row: i32,
+    /// Whether lines are read half way between rows, too.
+    pub(super) has_halves: bool,
 }
 
 /// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then
@@ -71,14 +71,6 @@ impl Grid<'_> {
         }
         ranges
     }
-}
-
-/// Texels of a group of lines, one of each.
-#[derive(Clone, Copy)]
-pub(super) struct Texels<const CHANNELS: usize> {
-    pub(super) values: [LineLanes; CHANNELS],
-    /// Where they are seen, in bins from the grid's first.
-    pub(super) place: LineLanes,
 }
 
 /// Eight lanes of a row of line values.

@@ -3,7 +3,7 @@
 use super::grid::{Grid, MOST_LINES, Profile, Row, load};
 use super::pixels::PixelOnLines;
 use crate::light::LocalLights;
-use crate::simd::{PixelLanes, TexelLanes, exp_negative, lane_indices, sums};
+use crate::simd::{BETWEEN_SCALE, PixelLanes, TexelLanes, exp_negative, lane_indices, sums};
 use crate::texture::Texel;
 use glam::Vec3;
 
@@ -110,9 +110,10 @@ impl Totals {
         };
         let (weight, color) = sums_of(self.color);
         let mean = |sums: [f32; 3]| sums.map(|sum| sum / weight);
+        let color_of = |sums: [f32; 3]| mean(sums).map(|c| c.max(0.0) * (1.0 / BETWEEN_SCALE));
         let normal = if is_lit { mean(sums_of(self.normal).1) } else { Texel::UP };
         // A difference of 0 may be rounded below.
-        (weight > LEAST_WEIGHT).then(|| Texel { color: mean(color).map(|c| c.max(0.0)), normal })
+        (weight > LEAST_WEIGHT).then(|| Texel { color: color_of(color), normal })
     }
 }
 
