@@ -175,17 +175,6 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
                 steps.starts[0][first..first + 16].copy_from_slice(&starts(numbers));
             }
         }
-        self.touch(steps);
-    }
-
-    /// Touches one word of each plane, so that cache misses of many rows overlap: the work on a row
-    /// is too long for the processor to look ahead.
-    #[inline(always)]
-    fn touch(&self, steps: &Steps) {
-        let (words, stride) = (self.frame.rows.words(), self.frame.rows.stride());
-        let starts = &steps.starts[usize::from(HALVES)][1..=steps.num];
-        let touched = starts.iter().fold(0, |all, i| all | words[*i] | words[*i + stride]);
-        std::hint::black_box(touched);
     }
 
     /// Where the lines lie in the run of texels of a step.

@@ -62,7 +62,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
             for i in set_bits(seen | seen >> 1) {
                 let next = lines.texels(&steps, i);
                 last.place = steps.places[i.saturating_sub(1)];
-                walk.pass(&last, &next, &mut self.bins);
+                walk.pass(last, next, &mut self.bins);
                 last = next;
             }
             num_read += num;
@@ -70,7 +70,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         if !walk.is_done() {
             // The deepest relief is seen behind all bins, unless rounding left some of them open.
             let last = lines.texels(&steps, steps.num);
-            walk.pass(&last, &last.moved_to(walk.end), &mut self.bins);
+            walk.pass(last, last.moved_to(walk.end), &mut self.bins);
         }
         num_read as u64
     }

@@ -57,35 +57,40 @@ pub(super) struct Walk<const CHANNELS: usize> {
 }
 
 /// The segment between two steps, whose colours are linear between its ends.
-struct Segment<'a, const CHANNELS: usize> {
-    last: &'a Texels<CHANNELS>,
-    next: &'a Texels<CHANNELS>,
+#[derive(Clone, Copy)]
+struct Segment<const CHANNELS: usize> {
+    last: Texels<CHANNELS>,
+    next: Texels<CHANNELS>,
     /// Half of 1 over the length.
     half_inverse: LineLanes,
 }
 
-impl<const CHANNELS: usize> Segment<'_, CHANNELS> {
-    /// The share in the colour between two places of the next texel, times their distance, and that
-    /// of the last one.
+impl<const CHANNELS: usize> Segment<CHANNELS> {
     #[inline(always)]
-    fn shares(&self, from: LineLanes, to: LineLanes) -> [LineLanes; 2] {
-        // Where the middle lies between the last texel (0) and the next one (1).
-        let middle = ((from - self.last.place) + (to - self.last.place)) * self.half_inverse;
-        let length = to - from;
-        let next = length * middle;
-        [next, length - next]
+    fn new(last: Texels<CHANNELS>, next: Texels<CHANNELS>) -> Self {
+        let length = (next.place - last.place).fast_max(LineLanes::splat(LEAST_SEGMENT));
+        Self { last, next, half_inverse: LineLanes::HALF / length }
     }
 
-    /// Colour times length between two places, added to sums.
+    /// Sums and the colour times the length between two places.
     #[inline(always)]
-    fn add_to(
+    fn added_to(
         &self,
-        sums: &[LineLanes; CHANNELS],
+        sums: [LineLanes; CHANNELS],
         from: LineLanes,
         to: LineLanes,
     ) -> [LineLanes; CHANNELS] {
-        let [next, last] = self.shares(from, to);
-        std::array::from_fn(|i| sums[i] + self.next.values[i] * next + self.last.values[i] * last)
+        let Self { last, next, half_inverse } = self;
+        // Where the middle lies between the last texel (0) and the next one (1).
+        let middle = ((from - last.place) + (to - last.place)) * *half_inverse;
+        let length = to - from;
+        let of_next = length * middle;
+        let of_last = length - of_next;
+        let mut all = sums;
+        for i in 0..CHANNELS {
+            all[i] = all[i] + next.values[i] * of_next + last.values[i] * of_last;
+        }
+        all
     }
 
     /// The colour of one line at a place.
@@ -130,58 +135,57 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
     #[inline(always)]
     pub(super) fn pass(
         &mut self,
-        last: &Texels<CHANNELS>,
-        next: &Texels<CHANNELS>,
+        last: Texels<CHANNELS>,
+        next: Texels<CHANNELS>,
         bins: &mut [[Row; CHANNELS]],
     ) {
-        let length = (next.place - last.place).fast_max(LineLanes::splat(LEAST_SEGMENT));
-        let segment = Segment { last, next, half_inverse: LineLanes::HALF / length };
+        let segment = Segment::new(last, next);
         // Move the record on, never back, and not beyond the last bin.
         let record = self.record.fast_max(next.place).fast_min(self.end);
         // Add what is seen within the lines' own bins.
         let is_full = record.simd_ge(self.bin_end);
-        self.sums = segment.add_to(&self.sums, self.record, record.fast_min(self.bin_end));
+        self.sums = segment.added_to(self.sums, self.record, record.fast_min(self.bin_end));
         self.record = record;
         // One test of all lines spares the writing where none has filled its bin.
         let full = is_full.to_bitmask();
         if full != 0 {
+            // A bin is 1 long, so its sum of colour times length is its mean.
+            let own = (self.bin_end - 1.0).fast_trunc_int().to_array();
+            let sums = self.sums.map(LineLanes::to_array);
+            for lane in set_bits(full) {
+                let bin = &mut bins[own[lane] as usize];
+                (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = sums[i][lane]);
+            }
             let bin = record.floor();
-            self.write(full, bin, &segment, bins);
+            let long = bin.simd_gt(self.bin_end).to_bitmask() & full;
+            if long != 0 {
+                // Copies, so that what is used at each step needs not be in memory.
+                let segment = segment;
+                fill((long, self.at), [self.bin_end, bin], &segment, bins);
+            }
             // Begin the sums of the bins that the records lie in now.
-            let rest = segment.add_to(&[LineLanes::ZERO; CHANNELS], bin, record);
+            let rest = segment.added_to([LineLanes::ZERO; CHANNELS], bin, record);
             (0..CHANNELS).for_each(|i| self.sums[i] = is_full.select(rest[i], self.sums[i]));
             self.bin_end = bin + 1.0;
         }
     }
+}
 
-    /// Writes the bins from each full line's own one up to `end`.
-    #[inline(always)]
-    fn write(
-        &self,
-        full: u32,
-        end: LineLanes,
-        segment: &Segment<CHANNELS>,
-        bins: &mut [[Row; CHANNELS]],
-    ) {
-        // A bin is 1 long, so its sum of colour times length is its mean.
-        let own = (self.bin_end - 1.0).fast_trunc_int().to_array();
-        let sums = self.sums.map(LineLanes::to_array);
-        for lane in set_bits(full) {
-            let bin = &mut bins[own[lane] as usize];
-            (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = sums[i][lane]);
-        }
-        // The bins after it lie wholly in the segment, which is linear: the colour at their middle
-        // is theirs.
-        let long = end.simd_gt(self.bin_end).to_bitmask() & full;
-        if long != 0 {
-            let to = end.fast_trunc_int().to_array();
-            for lane in set_bits(long) {
-                for number in own[lane] + 1..to[lane] {
-                    let color = segment.at(lane, number as f32 + 0.5);
-                    let bin = &mut bins[number as usize];
-                    (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = color[i]);
-                }
-            }
+/// Writes bins of some lanes that lie wholly in a segment, which is linear: the colour at their
+/// middle is theirs.
+#[inline(never)]
+fn fill<const CHANNELS: usize>(
+    (lanes, at): (u32, usize),
+    range: [LineLanes; 2],
+    segment: &Segment<CHANNELS>,
+    bins: &mut [[Row; CHANNELS]],
+) {
+    let [from, to] = range.map(|bin| bin.fast_trunc_int().to_array());
+    for lane in set_bits(lanes) {
+        for number in from[lane]..to[lane] {
+            let color = segment.at(lane, number as f32 + 0.5);
+            let bin = &mut bins[number as usize];
+            (0..CHANNELS).for_each(|i| bin[i][at + lane] = color[i]);
         }
     }
 }
