@@ -6,8 +6,8 @@
 //! [`f32x8::fast_min`] and [`f32x8::fast_max`] on values that are not NaN.
 
 use wide::f32x4;
-use wide::{i16x16, i16x32, u16x32};
 pub use wide::{f32x8, f32x16, f64x8, i32x8, i32x16, u32x8, u32x16};
+use wide::{i16x16, i16x32, u16x32};
 
 /// Eight pixels: two 2x2 quads, lane `4 * quad + 2 * dy + dx`.
 pub type PixelLanes = f32x8;
@@ -311,8 +311,7 @@ impl Blend {
 
     /// The words between `near` and `far`, each half within those of the two.
     pub fn mix(self, [near, far]: [u32x8; 2]) -> u32x8 {
-        let (near, far): (i16x16, i16x16) =
-            (wide::bytemuck::cast(near), wide::bytemuck::cast(far));
+        let (near, far): (i16x16, i16x16) = (wide::bytemuck::cast(near), wide::bytemuck::cast(far));
         wide::bytemuck::cast(near + (far - near).mul_scale_round(self.0))
     }
 }

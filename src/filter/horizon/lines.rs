@@ -153,7 +153,8 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
     fn find(&self, steps: &mut Steps) {
         let SweepFrame { origin, shear, spread, rows, .. } = *self.frame;
         for first in (0..=steps.num).step_by(16) {
-            let numbers = line_indices().fast_trunc_int() + i32x16::splat(steps.before + first as i32);
+            let numbers =
+                line_indices().fast_trunc_int() + i32x16::splat(steps.before + first as i32);
             let q = LineLanes::from_i32x16(numbers) * (1.0 / Self::STEPS as f32) - self.middle;
             // Rows that are read ahead may lie where lines would run together, or farther apart
             // than a run of texels reaches.
@@ -187,9 +188,8 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
     #[inline(always)]
     fn heights(&self, steps: &Steps, i: usize) -> LineLanes {
         let (between, rows) = (self.between(steps, i), self.frame.rows);
-        let of_row = |starts: &[usize; SLOTS]| {
-            between.halves_at(rows.words(), starts[i] + rows.stride())[1]
-        };
+        let of_row =
+            |starts: &[usize; SLOTS]| between.halves_at(rows.words(), starts[i] + rows.stride())[1];
         let [near, far] = &steps.starts;
         if HALVES { (of_row(near) + of_row(far)) * 0.5 } else { of_row(near) }
     }
