@@ -82,7 +82,7 @@ struct SeenAt {
 impl SeenAt {
     fn new(grid: &Grid, xi: LineLanes) -> Self {
         let SweepFrame { tilt, depth, growth, .. } = *grid.frame;
-        let (scale, unit) = (1.0 / grid.step, 1.0 / (FULL_F32 * BETWEEN_SCALE));
+        let (scale, unit) = (grid.inverse_step, 1.0 / (FULL_F32 * BETWEEN_SCALE));
         let depth = (xi * tilt + depth) * scale;
         let begin = grid.begin * scale;
         Self {

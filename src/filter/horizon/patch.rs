@@ -346,9 +346,11 @@ impl Plan<'_> {
                 most_scale: self.most_scale,
                 first: first + line as f32 * spacing,
                 spacing,
+                inverse_spacing: 1.0 / spacing,
                 num_lines: (num_lines - line).min(MOST_LINES),
                 begin: q[0],
                 step: self.step,
+                inverse_step: 1.0 / self.step,
                 num_bins,
                 has_halves,
             };

@@ -41,7 +41,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
             self.bins.resize(grid.num_bins, [EMPTY_ROW; CHANNELS]);
         }
         // Widen the range to whole bins, at least one: a bin holds the mean of all that it shows.
-        let bin_at = |place: f32| (place - grid.begin) / grid.step;
+        let bin_at = |place: f32| (place - grid.begin) * grid.inverse_step;
         let first_bin = bin_at(entry).max(0.0) as usize;
         let end_bin = (bin_at(exit).ceil() as usize).clamp(first_bin + 1, grid.num_bins);
         let [start, end] = [first_bin, end_bin].map(|bin| grid.begin + bin as f32 * grid.step);
