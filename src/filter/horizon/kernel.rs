@@ -15,6 +15,10 @@ fn integral(z: LineLanes) -> LineLanes {
     ((((s * 0.028_880_1 - 0.148_824_7) * s + 0.381_363_6) * s - 0.663_076_2) * s + 0.999_799) * z
 }
 
+/// What bins add to the square of an ellipse's half height, in squares of their length: four times
+/// the variance of a mean over a bin that is then weighed by a mean over it, 1/12 each.
+const BIN_BLUR: f32 = 4.0 / 6.0;
+
 /// A line through the middle of an ellipse weighs about 1; rounding, 1e-7.
 const LEAST_WEIGHT: f32 = 1e-5;
 
@@ -61,7 +65,10 @@ impl Totals {
         lights: Option<&LocalLights>,
     ) {
         assert!(line <= MOST_LINES, "a line of the grid");
-        let PixelOnLines { q, along, skew, across, .. } = *pixel;
+        let PixelOnLines { q, skew, across, .. } = *pixel;
+        // Bins blur by themselves, so the ellipse is made lower by as much.
+        let bin = grid.step * pixel.along;
+        let along = pixel.along / (1.0 - BIN_BLUR * (bin * bin)).sqrt();
         let xi = (line_indices() + line as f32) * grid.spacing + (grid.first - pixel.xi);
         // Lines of the next grid count there.
         let is_here = line_indices().simd_lt(LineLanes::splat((grid.num_lines - line) as f32));
