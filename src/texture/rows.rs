@@ -11,8 +11,8 @@
 //! plane 2 | .... | normal      | ...............|
 //! ```
 
-use super::wrap::{Wrap, wrap_index};
-use crate::simd::{u32x8, u32x16};
+use super::wrap::{Wrap, wrap_index, wrap_indices};
+use crate::simd::{i32x16, u32x8, u32x16};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -198,6 +198,21 @@ impl Rows {
     #[inline(always)]
     pub(crate) fn start_at(&self, x: i32, y: i32) -> usize {
         self.row_start(y) + self.run_start(x)
+    }
+
+    /// [`Self::start_at`] of sixteen columns and rows.
+    #[inline(always)]
+    pub(crate) fn starts_at(&self, x: i32x16, y: i32x16) -> [usize; 16] {
+        let columns = match self.wrap {
+            Wrap::Clamp => {
+                let apron = i32x16::splat(APRON as i32);
+                x.max(-apron).min(i32x16::splat(self.width as i32)) + apron
+            }
+            Wrap::Repeat | Wrap::Mirror => wrap_indices(self.wrap, x, self.width),
+        };
+        let rows = wrap_indices(self.wrap, y, self.height);
+        let (columns, rows, pitch) = (columns.to_array(), rows.to_array(), self.pitch());
+        std::array::from_fn(|i| rows[i] as usize * pitch + columns[i] as usize)
     }
 
     /// All words; see [`Self::start_at`].

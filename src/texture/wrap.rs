@@ -1,5 +1,7 @@
 //! What lies beyond the edge of a texture.
 
+use crate::simd::i32x16;
+
 /// What lies beyond the edge of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
@@ -22,5 +24,16 @@ pub(crate) fn wrap_index(wrap: Wrap, i: i32, n: usize) -> usize {
         // A power of two, the usual size, needs no division.
         Wrap::Repeat | Wrap::Mirror if n & (n - 1) == 0 => (i & (n - 1)) as usize,
         Wrap::Repeat | Wrap::Mirror => i.rem_euclid(n) as usize,
+    }
+}
+
+/// [`wrap_index`] of sixteen places.
+#[inline(always)]
+pub(crate) fn wrap_indices(wrap: Wrap, i: i32x16, n: usize) -> i32x16 {
+    let last = i32x16::splat(n as i32 - 1);
+    match wrap {
+        Wrap::Clamp => i.max(i32x16::ZERO).min(last),
+        Wrap::Repeat | Wrap::Mirror if n & (n - 1) == 0 => i & last,
+        Wrap::Repeat | Wrap::Mirror => i32x16::new(i.to_array().map(|i| i.rem_euclid(n as i32))),
     }
 }

@@ -1,10 +1,10 @@
 //! One table: the image seen in one direction, with its coarser levels, in one word a texel.
 
-use crate::simd::{TexelLanes, as_signed, u32x8};
-use crate::texture::box_taps;
+use crate::simd::{LineLanes, as_signed_words, u32x8, u32x16};
+use crate::texture::{Wrap, box_taps, wrap_index};
 
-/// Texels that a row repeats beyond its end, so that any eight neighbours are one load.
-const APRON: usize = 8;
+/// Neighbouring texels that are one load: a row repeats so many beyond its end.
+pub(super) const RUN: usize = 8;
 
 /// The image seen in one direction.
 #[derive(Clone, Debug)]
@@ -12,8 +12,9 @@ pub(super) struct FarImage {
     levels: Vec<FarLevel>,
 }
 
+/// One of its levels.
 #[derive(Clone, Debug)]
-struct FarLevel {
+pub(super) struct FarLevel {
     width: usize,
     height: usize,
     words: Vec<u32>,
@@ -22,7 +23,7 @@ struct FarLevel {
 impl FarImage {
     /// Words of a level of that size.
     pub(super) fn num_words([width, height]: [usize; 2]) -> usize {
-        (width + APRON) * height
+        (width + RUN) * height
     }
 
     /// An image and its coarser levels from linear colours (0 to 1 of the surface's scale), row by
@@ -39,23 +40,31 @@ impl FarImage {
         }
     }
 
-    /// A row of a level of the endless pattern.
-    pub(super) fn row(&self, level: usize, y: i32) -> &[u32] {
-        let FarLevel { width, height, words } = &self.levels[level];
-        let start = y.rem_euclid(*height as i32) as usize * (width + APRON);
-        &words[start..start + width + APRON]
-    }
-
-    /// Width of a level.
-    pub(super) fn width(&self, level: usize) -> usize {
-        self.levels[level].width
+    /// One of the levels, the finest first.
+    pub(super) fn level(&self, level: usize) -> &FarLevel {
+        &self.levels[level]
     }
 }
 
 impl FarLevel {
     fn new([width, height]: [usize; 2], colors: &[[f32; 3]]) -> Self {
-        let row = |y: usize| (0..width + APRON).map(move |x| encode(colors[y * width + x % width]));
+        let row = |y: usize| (0..width + RUN).map(move |x| encode(colors[y * width + x % width]));
         Self { width, height, words: (0..height).flat_map(row).collect() }
+    }
+
+    /// Where the run that begins at a column and row of the endless pattern starts.
+    #[inline(always)]
+    pub(super) fn start_at(&self, x: i32, y: i32) -> usize {
+        let [x, y] =
+            [(x, self.width), (y, self.height)].map(|(i, n)| wrap_index(Wrap::Repeat, i, n));
+        y * (self.width + RUN) + x
+    }
+
+    /// The texels of a run.
+    #[inline(always)]
+    pub(super) fn run(&self, start: usize) -> u32x8 {
+        let run: &[u32; RUN] = self.words[start..start + RUN].try_into().expect("a whole run");
+        u32x8::new(*run)
     }
 }
 
@@ -68,16 +77,17 @@ fn encode(color: [f32; 3]) -> u32 {
         | ((b * 1023.0 + 0.5) as u32) << 22
 }
 
-/// Eight texels as linear red, green and blue, in units of 1/2047^2 and 1/1023^2 of the surface's
-/// scale.
-pub(super) fn decode(words: u32x8) -> [TexelLanes; 3] {
-    let part = |bits: u32x8| {
-        let root = TexelLanes::from_i32x8(as_signed(bits));
+/// Sixteen texels as linear red, green and blue, in units of 1/2047^2 and 1/1023^2 of the
+/// surface's scale.
+#[inline(always)]
+pub(super) fn decode(words: u32x16) -> [LineLanes; 3] {
+    let part = |bits: u32x16| {
+        let root = LineLanes::from_i32x16(as_signed_words(bits));
         root * root
     };
     [
-        part(words & u32x8::splat(2047)),
-        part(words >> 11_u32 & u32x8::splat(2047)),
+        part(words & u32x16::splat(2047)),
+        part(words >> 11_u32 & u32x16::splat(2047)),
         part(words >> 22_u32),
     ]
 }

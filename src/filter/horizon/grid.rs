@@ -9,7 +9,7 @@
 
 use super::pixels::PixelOnLines;
 use super::sweep_frame::SweepFrame;
-use crate::simd::{LineLanes, TexelLanes};
+use crate::simd::LineLanes;
 
 /// Most lines of a grid.
 pub(super) const MOST_LINES: usize = 64;
@@ -17,8 +17,8 @@ pub(super) const MOST_LINES: usize = 64;
 /// Lines that are swept together, as lanes.
 pub(super) const GROUP: usize = 16;
 
-/// A kernel's vector of eight may begin at any line of the grid.
-const WIDTH: usize = MOST_LINES + 8;
+/// A kernel's vector of lines may begin at any line of the grid.
+const WIDTH: usize = MOST_LINES + GROUP;
 
 /// A value of each line.
 pub(super) type Row = [f32; WIDTH];
@@ -35,13 +35,17 @@ pub(super) struct Grid<'a> {
     /// `xi` of the first line, and how far apart lines are; below 1 texel.
     pub(super) first: f32,
     pub(super) spacing: f32,
+    /// 1 over `spacing`.
+    pub(super) inverse_spacing: f32,
     pub(super) num_lines: usize,
     /// The seen place where bins begin, and the length of a bin, in rows from the middle.
     pub(super) begin: f32,
     pub(super) step: f32,
+    /// 1 over `step`.
+    pub(super) inverse_step: f32,
     pub(super) num_bins: usize,
-    /// 1; or 2 where lines are read half way between rows, too.
-    pub(super) steps_per_row: i32,
+    /// Whether lines are read half way between rows, too.
+    pub(super) has_halves: bool,
 }
 
 /// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then
@@ -56,7 +60,7 @@ impl Grid<'_> {
     /// greater where none asks.
     pub(super) fn ranges(&self, kernels: &[PixelOnLines]) -> [[f32; 2]; MOST_LINES / GROUP] {
         let mut ranges = [[f32::MAX, f32::MIN]; MOST_LINES / GROUP];
-        let inverse = 1.0 / (GROUP as f32 * self.spacing);
+        let inverse = self.inverse_spacing * (1.0 / GROUP as f32);
         for kernel in kernels {
             let PixelOnLines { xi, q, half_width, half_height, .. } = *kernel;
             let [from, to] =
@@ -73,17 +77,9 @@ impl Grid<'_> {
     }
 }
 
-/// Texels of a group of lines, one of each.
-#[derive(Clone, Copy)]
-pub(super) struct Texels<const CHANNELS: usize> {
-    pub(super) values: [LineLanes; CHANNELS],
-    /// Where they are seen, in bins from the grid's first.
-    pub(super) place: LineLanes,
-}
-
-/// Eight lanes of a row of line values.
+/// Sixteen lanes of a row of line values.
 #[inline(always)]
-pub(super) fn load(row: &Row, at: usize) -> TexelLanes {
-    let lanes: &[f32; 8] = row[at..at + 8].try_into().expect("a slice of eight");
-    TexelLanes::new(*lanes)
+pub(super) fn load(row: &Row, at: usize) -> LineLanes {
+    let lanes: &[f32; GROUP] = row[at..at + GROUP].try_into().expect("a slice of sixteen");
+    LineLanes::new(*lanes)
 }

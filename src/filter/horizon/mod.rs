@@ -24,6 +24,7 @@
 
 mod grid;
 mod kernel;
+mod lines;
 mod patch;
 mod pixels;
 mod sweep;

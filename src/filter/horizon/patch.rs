@@ -335,10 +335,9 @@ impl Plan<'_> {
         let num_lines = 2 * ((xi[1] - xi[0]) * (0.5 / spacing)).ceil() as usize;
         let first = (xi[0] + xi[1]) * 0.5 - spacing * (num_lines as f32 * 0.5 - 0.5);
         let num_bins = ((q[1] - q[0]) / self.step).ceil().max(1.0) as usize;
-        let is_kinked = self.level == 0
+        let has_halves = self.level == 0
             && self.frame.shear.abs() > LEAST_SHEAR
             && self.extent.half_width < KINK_WIDTH;
-        let steps_per_row = if is_kinked { 2 } else { 1 };
         let mut num_rows = 0;
         // Sweep a grid at a time, and weigh it before the next: its bins are still in the cache.
         for line in (0..num_lines).step_by(MOST_LINES) {
@@ -347,11 +346,13 @@ impl Plan<'_> {
                 most_scale: self.most_scale,
                 first: first + line as f32 * spacing,
                 spacing,
+                inverse_spacing: 1.0 / spacing,
                 num_lines: (num_lines - line).min(MOST_LINES),
                 begin: q[0],
                 step: self.step,
+                inverse_step: 1.0 / self.step,
                 num_bins,
-                steps_per_row,
+                has_halves,
             };
             for (group, range) in grid.ranges(pixels).into_iter().enumerate() {
                 if range[0] < range[1] {

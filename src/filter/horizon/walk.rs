@@ -16,50 +16,87 @@
 //!                                            ^ begins the sum of bin 2
 //! ```
 
-use super::grid::{GROUP, Row, Texels};
-use crate::simd::LineLanes;
+use super::grid::{GROUP, Row};
+use crate::simd::{LineLanes, set_bits};
 
 /// Least length of a segment, in bins, that a place in it is divided by: a shorter one shows one
 /// colour.
 const LEAST_SEGMENT: f32 = 1e-6;
 
+/// Texels of a group of lines, one of each.
+#[derive(Clone, Copy)]
+pub(super) struct Texels<const CHANNELS: usize> {
+    pub(super) values: [LineLanes; CHANNELS],
+    /// Where they are seen, in bins from the grid's first.
+    pub(super) place: LineLanes,
+}
+
+impl<const CHANNELS: usize> Default for Texels<CHANNELS> {
+    fn default() -> Self {
+        Self { values: [LineLanes::ZERO; CHANNELS], place: LineLanes::ZERO }
+    }
+}
+
+impl<const CHANNELS: usize> Texels<CHANNELS> {
+    /// The same, seen at another place if that is farther.
+    pub(super) fn moved_to(self, place: LineLanes) -> Self {
+        Self { place: self.place.fast_max(place), ..self }
+    }
+}
+
 /// A group of lines on its way. Places are in bins.
 pub(super) struct Walk<const CHANNELS: usize> {
-    /// `M`, and the bin that it lies in.
+    /// `M`, and the end of the bin that it lies in.
     record: LineLanes,
-    bin: LineLanes,
+    bin_end: LineLanes,
     /// Colour times length seen in the bin.
     sums: [LineLanes; CHANNELS],
     /// The first line's place in a row of the profile, and the bin where lines end.
     at: usize,
-    end: LineLanes,
+    pub(super) end: LineLanes,
 }
 
-/// The segment between two rows, whose colours are linear between its ends.
-struct Segment<'a, const CHANNELS: usize> {
-    last: &'a Texels<CHANNELS>,
-    next: &'a Texels<CHANNELS>,
-    /// 1 over the length.
-    inverse: LineLanes,
+/// The segment between two steps, whose colours are linear between its ends.
+#[derive(Clone, Copy)]
+struct Segment<const CHANNELS: usize> {
+    last: Texels<CHANNELS>,
+    next: Texels<CHANNELS>,
+    /// Half of 1 over the length.
+    half_inverse: LineLanes,
 }
 
-impl<const CHANNELS: usize> Segment<'_, CHANNELS> {
-    /// Colour times length between two places.
+impl<const CHANNELS: usize> Segment<CHANNELS> {
     #[inline(always)]
-    fn between(&self, from: LineLanes, to: LineLanes) -> [LineLanes; CHANNELS] {
-        let Self { last, next, inverse } = self;
+    fn new(last: Texels<CHANNELS>, next: Texels<CHANNELS>) -> Self {
+        let length = (next.place - last.place).fast_max(LineLanes::splat(LEAST_SEGMENT));
+        Self { last, next, half_inverse: LineLanes::HALF / length }
+    }
+
+    /// Sums and the colour times the length between two places.
+    #[inline(always)]
+    fn added_to(
+        &self,
+        sums: [LineLanes; CHANNELS],
+        from: LineLanes,
+        to: LineLanes,
+    ) -> [LineLanes; CHANNELS] {
+        let Self { last, next, half_inverse } = self;
         // Where the middle lies between the last texel (0) and the next one (1).
-        let (middle, length) = (((from + to) * 0.5 - last.place) * *inverse, to - from);
-        std::array::from_fn(|i| {
-            (last.values[i] + (next.values[i] - last.values[i]) * middle) * length
-        })
+        let middle = ((from - last.place) + (to - last.place)) * *half_inverse;
+        let length = to - from;
+        let of_next = length * middle;
+        let of_last = length - of_next;
+        let mut all = sums;
+        for i in 0..CHANNELS {
+            all[i] = all[i] + next.values[i] * of_next + last.values[i] * of_last;
+        }
+        all
     }
 
     /// The colour of one line at a place.
-    #[inline(always)]
     fn at(&self, lane: usize, place: f32) -> [f32; CHANNELS] {
         let of = |lanes: &LineLanes| lanes.as_array()[lane];
-        let part = (place - of(&self.last.place)) * of(&self.inverse);
+        let part = (place - of(&self.last.place)) * of(&self.half_inverse) * 2.0;
         std::array::from_fn(|i| {
             let [last, next] = [&self.last.values[i], &self.next.values[i]].map(of);
             last + (next - last) * part
@@ -77,7 +114,7 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
         let record = LineLanes::new(bins);
         Self {
             record,
-            bin: record,
+            bin_end: record + 1.0,
             sums: [LineLanes::ZERO; CHANNELS],
             at,
             end: LineLanes::splat(end_bin as f32),
@@ -86,77 +123,69 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
 
     /// Whether all bins of all lines are written.
     pub(super) fn is_done(&self) -> bool {
-        self.bin.simd_ge(self.end).all()
+        self.bin_end.simd_gt(self.end).all()
     }
 
-    /// Adds what is seen beyond the record of the segment between two rows.
+    /// What a texel must be seen beyond to be seen at all: nothing is where all bins are written.
+    pub(super) fn bound(&self) -> LineLanes {
+        self.record.simd_ge(self.end).select(LineLanes::splat(f32::MAX), self.record)
+    }
+
+    /// Adds what is seen beyond the record of the segment between two steps.
     #[inline(always)]
     pub(super) fn pass(
         &mut self,
-        last: &Texels<CHANNELS>,
-        next: &Texels<CHANNELS>,
+        last: Texels<CHANNELS>,
+        next: Texels<CHANNELS>,
         bins: &mut [[Row; CHANNELS]],
     ) {
-        let inverse =
-            LineLanes::ONE / (next.place - last.place).fast_max(LineLanes::splat(LEAST_SEGMENT));
-        let segment = Segment { last, next, inverse };
+        let segment = Segment::new(last, next);
         // Move the record on, never back, and not beyond the last bin.
         let record = self.record.fast_max(next.place).fast_min(self.end);
         // Add what is seen within the lines' own bins.
-        let bin_end = self.bin + LineLanes::ONE;
-        let is_full = record.simd_ge(bin_end);
-        let seen = segment.between(self.record, record.fast_min(bin_end));
-        (0..CHANNELS).for_each(|i| self.sums[i] += seen[i]);
+        let is_full = record.simd_ge(self.bin_end);
+        self.sums = segment.added_to(self.sums, self.record, record.fast_min(self.bin_end));
+        self.record = record;
         // One test of all lines spares the writing where none has filled its bin.
         let full = is_full.to_bitmask();
         if full != 0 {
+            // A bin is 1 long, so its sum of colour times length is its mean.
+            let own = (self.bin_end - 1.0).fast_trunc_int().to_array();
+            let sums = self.sums.map(LineLanes::to_array);
+            for lane in set_bits(full) {
+                let bin = &mut bins[own[lane] as usize];
+                (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = sums[i][lane]);
+            }
             let bin = record.floor();
-            self.write(full, bin, &segment, bins);
+            let long = bin.simd_gt(self.bin_end).to_bitmask() & full;
+            if long != 0 {
+                // Copies, so that what is used at each step needs not be in memory.
+                let segment = segment;
+                fill((long, self.at), [self.bin_end, bin], &segment, bins);
+            }
             // Begin the sums of the bins that the records lie in now.
-            let rest = segment.between(bin, record);
+            let rest = segment.added_to([LineLanes::ZERO; CHANNELS], bin, record);
             (0..CHANNELS).for_each(|i| self.sums[i] = is_full.select(rest[i], self.sums[i]));
-            self.bin = bin;
-        }
-        self.record = record;
-    }
-
-    /// Writes the bins from each full line's own one up to `end`.
-    #[inline(always)]
-    fn write(
-        &self,
-        full: u32,
-        end: LineLanes,
-        segment: &Segment<CHANNELS>,
-        bins: &mut [[Row; CHANNELS]],
-    ) {
-        let [from, to] = [self.bin, end].map(|bin| bin.fast_trunc_int().to_array());
-        let mut left = full;
-        while left != 0 {
-            // The mask tells the compiler what is so anyway: no lane is out of bounds.
-            let lane = left.trailing_zeros() as usize & (GROUP - 1);
-            let bins = &mut bins[from[lane] as usize..to[lane] as usize];
-            // A bin is 1 long, so its sum of colour times length is its mean. The bins after it
-            // lie wholly in the segment, which is linear: the colour at their middle is theirs.
-            if let Some((first, others)) = bins.split_first_mut() {
-                (0..CHANNELS)
-                    .for_each(|i| first[i][self.at + lane] = self.sums[i].as_array()[lane]);
-                for (bin, number) in others.iter_mut().zip(from[lane] + 1..) {
-                    let color = segment.at(lane, number as f32 + 0.5);
-                    (0..CHANNELS).for_each(|i| bin[i][self.at + lane] = color[i]);
-                }
-            }
-            left &= left - 1;
+            self.bin_end = bin + 1.0;
         }
     }
+}
 
-    /// Gives bins that rounding has left open the last colour.
-    pub(super) fn finish(&mut self, last: &Texels<CHANNELS>, bins: &mut [[Row; CHANNELS]]) {
-        let end = self.end.as_array()[0] as usize;
-        for lane in 0..GROUP {
-            for bin in &mut bins[self.bin.as_array()[lane] as usize..end] {
-                (0..CHANNELS)
-                    .for_each(|i| bin[i][self.at + lane] = last.values[i].as_array()[lane]);
-            }
+/// Writes bins of some lanes that lie wholly in a segment, which is linear: the colour at their
+/// middle is theirs.
+#[inline(never)]
+fn fill<const CHANNELS: usize>(
+    (lanes, at): (u32, usize),
+    range: [LineLanes; 2],
+    segment: &Segment<CHANNELS>,
+    bins: &mut [[Row; CHANNELS]],
+) {
+    let [from, to] = range.map(|bin| bin.fast_trunc_int().to_array());
+    for lane in set_bits(lanes) {
+        for number in from[lane]..to[lane] {
+            let color = segment.at(lane, number as f32 + 0.5);
+            let bin = &mut bins[number as usize];
+            (0..CHANNELS).for_each(|i| bin[i][at + lane] = color[i]);
         }
     }
 }

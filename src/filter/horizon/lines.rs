@@ -1,0 +1,238 @@
+//! A group of lines on its way: where it crosses rows of texels, and what it reads there.
+//!
+//! A step is a row or, where half rows are read too, half of one. Steps are read in blocks. Where
+//! the lines cross them is found for sixteen steps at once:
+//!
+//! ```text
+//!   step i     |     |  o  |  o  |  o  |  o   texels, and where lines cross the row
+//!              ^     ^--^
+//!        the run     `- offset of the first line; the others follow at equal distances
+//! ```
+
+use super::grid::Grid;
+use super::sweep_frame::SweepFrame;
+use super::walk::Texels;
+use crate::simd::{BETWEEN_SCALE, Between, LineLanes, halves, i32x16, join, line_indices};
+use crate::texture::{FULL_F32, unpack_normals};
+
+/// Most steps of a block: their numbers, and that of the step before, are bits of a word.
+pub(super) const MOST_STEPS: usize = 31;
+
+/// And the step before.
+const SLOTS: usize = MOST_STEPS + 1;
+
+/// A block of steps, and in slot 0 the step before it.
+pub(super) struct Steps {
+    /// The number of the step before.
+    before: i32,
+    /// Steps of the block.
+    pub(super) num: usize,
+    /// Where the lines' texels are seen, in bins from the grid's first.
+    pub(super) places: [LineLanes; SLOTS],
+    /// Distances from the middle, in rows.
+    q: [f32; SLOTS],
+    /// How much farther apart than in the middle lines are, and how far the first lies from its
+    /// run's first texel.
+    scales: [f32; SLOTS],
+    offsets: [f32; SLOTS],
+    /// Where the runs of texels start among the level's words; half way between rows there are two.
+    starts: [[usize; SLOTS]; 2],
+}
+
+impl Steps {
+    /// No steps yet; the next is `first`.
+    pub(super) fn new(first: i32) -> Self {
+        Self {
+            before: first - 1,
+            num: 0,
+            places: [LineLanes::ZERO; SLOTS],
+            q: [0.0; SLOTS],
+            scales: [0.0; SLOTS],
+            offsets: [0.0; SLOTS],
+            starts: [[0; SLOTS]; 2],
+        }
+    }
+}
+
+/// A group of lines of a grid. `HALVES`: they are read half way between rows, too.
+pub(super) struct Lines<'a, const HALVES: bool> {
+    frame: &'a SweepFrame<'a>,
+    most_scale: f32,
+    /// The first line's `xi`, and how far from it the others lie.
+    xi: f32,
+    others: LineLanes,
+    /// Most rows down to the deepest relief.
+    depth: f32,
+    /// The middle's row in the walking direction, and whether that is up (1) or down (-1).
+    middle: f32,
+    sign: i32,
+    seen: SeenAt,
+}
+
+/// Where heights are seen, `p = (q - d D) / (1 + d c)` in bins from the grid's first, with the depth
+/// `d = 1 - h`: `(scale q - constant + h slope) / (whole - h part)`.
+struct SeenAt {
+    scale: f32,
+    constant: LineLanes,
+    slope: LineLanes,
+    whole: f32,
+    part: f32,
+}
+
+impl SeenAt {
+    fn new(grid: &Grid, xi: LineLanes) -> Self {
+        let SweepFrame { tilt, depth, growth, .. } = *grid.frame;
+        let (scale, unit) = (grid.inverse_step, 1.0 / (FULL_F32 * BETWEEN_SCALE));
+        let depth = (xi * tilt + depth) * scale;
+        let begin = grid.begin * scale;
+        Self {
+            scale,
+            constant: depth + begin * (1.0 + growth),
+            slope: (depth + begin * growth) * unit,
+            whole: 1.0 + growth,
+            part: growth * unit,
+        }
+    }
+
+    #[inline(always)]
+    fn place(&self, q: f32, height: LineLanes) -> LineLanes {
+        (LineLanes::splat(q * self.scale) - self.constant + height * self.slope)
+            / (LineLanes::splat(self.whole) - height * self.part)
+    }
+}
+
+impl<'a, const HALVES: bool> Lines<'a, HALVES> {
+    /// Steps a row.
+    pub(super) const STEPS: i32 = if HALVES { 2 } else { 1 };
+
+    pub(super) fn new(grid: &Grid<'a>, first: usize) -> Self {
+        let frame = grid.frame;
+        let others = line_indices() * grid.spacing;
+        let xi = first as f32 * grid.spacing + grid.first;
+        let depths = (others + xi) * frame.tilt + frame.depth;
+        Self {
+            frame,
+            most_scale: grid.most_scale,
+            xi,
+            others,
+            depth: depths.to_array().into_iter().fold(0.0, f32::max),
+            middle: frame.toward * frame.origin[1],
+            sign: frame.toward as i32,
+            seen: SeenAt::new(grid, others + xi),
+        }
+    }
+
+    /// The last step at or before a seen place, in the walking direction, and the number of steps
+    /// after which the deepest relief is seen behind another.
+    pub(super) fn steps_between(&self, start: f32, end: f32) -> (i32, usize) {
+        let last = (end * (1.0 + self.frame.growth) + self.depth).max(end);
+        let num_rows = last as i32 - start as i32 + 4;
+        ((self.middle + start).floor() as i32 * Self::STEPS, (num_rows * Self::STEPS) as usize)
+    }
+
+    /// Reads the heights of the next steps. Returns a bit for each in which a line sees what lies
+    /// beyond its bound and all before; bit 0 is the step before them.
+    #[inline(always)]
+    pub(super) fn read(&self, steps: &mut Steps, num: usize, mut bound: LineLanes) -> u32 {
+        steps.places[0] = steps.places[steps.num];
+        steps.before += steps.num as i32;
+        steps.num = num;
+        self.find(steps);
+        let mut seen = 0;
+        for i in 1..=num {
+            let place = self.seen.place(steps.q[i], self.heights(steps, i));
+            seen |= u32::from(place.simd_gt(bound).any()) << i;
+            bound = bound.fast_max(place);
+            steps.places[i] = place;
+        }
+        seen
+    }
+
+    /// Finds where the lines cross the steps of a block.
+    #[inline(always)]
+    fn find(&self, steps: &mut Steps) {
+        let SweepFrame { origin, shear, spread, rows, .. } = *self.frame;
+        for first in (0..=steps.num).step_by(16) {
+            let numbers =
+                line_indices().fast_trunc_int() + i32x16::splat(steps.before + first as i32);
+            let q = LineLanes::from_i32x16(numbers) * (1.0 / Self::STEPS as f32) - self.middle;
+            // Rows that are read ahead may lie where lines would run together, or farther apart
+            // than a run of texels reaches.
+            let scale = (q * spread + 1.0)
+                .fast_max(LineLanes::ZERO)
+                .fast_min(LineLanes::splat(self.most_scale));
+            let x = scale * self.xi + (q * shear + origin[0]);
+            let left = x.floor();
+            steps.q[first..first + 16].copy_from_slice(q.as_array());
+            steps.scales[first..first + 16].copy_from_slice(scale.as_array());
+            steps.offsets[first..first + 16].copy_from_slice((x - left).as_array());
+            let columns = left.fast_trunc_int();
+            let starts = |rows_: i32x16| rows.starts_at(columns, rows_ * i32x16::splat(self.sign));
+            if HALVES {
+                let [near, far] = [0, 1].map(|i| starts((numbers + i32x16::splat(i)) >> 1_i32));
+                steps.starts[0][first..first + 16].copy_from_slice(&near);
+                steps.starts[1][first..first + 16].copy_from_slice(&far);
+            } else {
+                steps.starts[0][first..first + 16].copy_from_slice(&starts(numbers));
+            }
+        }
+    }
+
+    /// Where the lines lie in the run of texels of a step.
+    #[inline(always)]
+    fn between(&self, steps: &Steps, i: usize) -> Between {
+        Between::new(self.others * steps.scales[i] + steps.offsets[i])
+    }
+
+    /// The heights of a step.
+    #[inline(always)]
+    fn heights(&self, steps: &Steps, i: usize) -> LineLanes {
+        let (between, rows) = (self.between(steps, i), self.frame.rows);
+        let of_row =
+            |starts: &[usize; SLOTS]| between.halves_at(rows.words(), starts[i] + rows.stride())[1];
+        let [near, far] = &steps.starts;
+        if HALVES { (of_row(near) + of_row(far)) * 0.5 } else { of_row(near) }
+    }
+
+    /// The texels of a step.
+    #[inline(always)]
+    pub(super) fn texels<const CHANNELS: usize>(
+        &self,
+        steps: &Steps,
+        i: usize,
+    ) -> Texels<CHANNELS> {
+        let between = self.between(steps, i);
+        let [near, far] = &steps.starts;
+        let mut values = self.values(near[i], &between);
+        if HALVES {
+            let others = self.values::<CHANNELS>(far[i], &between);
+            (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
+        }
+        Texels { values, place: steps.places[i] }
+    }
+
+    /// The values where lines cross a row: colours in units of 1 / [`BETWEEN_SCALE`].
+    #[inline(always)]
+    fn values<const CHANNELS: usize>(
+        &self,
+        start: usize,
+        between: &Between,
+    ) -> [LineLanes; CHANNELS] {
+        let rows = self.frame.rows;
+        let (words, stride) = (rows.words(), rows.stride());
+        let mut values = [LineLanes::ZERO; CHANNELS];
+        let [red, green] = between.halves_at(words, start);
+        let [blue, _] = between.halves_at(words, start + stride);
+        values[..3].copy_from_slice(&[red, green, blue]);
+        if CHANNELS > 3 && rows.has_normals() {
+            let [near, far] = between.words_at(words, start + 2 * stride).map(|words| {
+                let [a, b] = halves(words).map(unpack_normals);
+                [0, 1, 2].map(|i| join([a[i], b[i]]))
+            });
+            (3..CHANNELS).for_each(|i| values[i] = between.mix(near[i - 3], far[i - 3]));
+        } else if CHANNELS > 3 {
+            values[CHANNELS - 1] = LineLanes::ONE;
+        }
+        values
+    }
+}
