@@ -108,7 +108,9 @@ impl TextureFrame {
     }
 
     /// Beams from all over the sky. Directions lie as densely as their light counts on the polygon;
-    /// one that is `cos` off it stands for `1 / cos` of what a texel sees that faces it.
+    /// one that is `cos` off it stands for `1 / cos` of what a texel sees that faces it. They come
+    /// in pairs that lie opposite each other, so that what a slope gains by one it loses by the
+    /// other.
     fn sky(&self, sky: &Sky) -> Vec<Beam> {
         let [x, y] = <[Vec3; 2]>::from(self.normal.any_orthonormal_pair());
         let beam = |[cos, sin]: [f32; 2], share: f32| {
@@ -117,7 +119,10 @@ impl TextureFrame {
             let intensity = sky.radiance(to_light) * (1.0 / (SKY_DIRECTIONS as f32 * up));
             self.beam(to_light, intensity)
         };
-        spiral(SKY_DIRECTIONS).filter_map(|(turn, share)| beam(turn, share)).collect()
+        let pair = |([cos, sin], share): ([f32; 2], f32)| {
+            [[cos, sin], [-cos, -sin]].map(|turn| beam(turn, share))
+        };
+        spiral(SKY_DIRECTIONS / 2).flat_map(pair).flatten().collect()
     }
 }
 

@@ -7,6 +7,7 @@ use crate::relief::directions::{
 use crate::relief::seen::{Seen, View, seen_depth, seen_image, square_difference};
 use crate::texture::{Surface, Wrap};
 use rayon::prelude::*;
+use std::sync::OnceLock;
 
 /// Texels of a table's finest level at the most: the larger the maps, the coarser the level that
 /// tables begin on.
@@ -54,12 +55,15 @@ pub(in crate::filter) struct FarField {
     /// at a grazing view. (Of the mean depth of all, most of which is hidden there, a blend of four
     /// is up to 6 dB worse.)
     pub(super) plane: f32,
-    /// By length, then azimuth: the longer the displacement, the more azimuths.
-    pub(super) images: Vec<FarImage>,
+    /// The mip level that tables are built from.
+    source: usize,
+    /// By length, then azimuth: the longer the displacement, the more azimuths. Each is built when
+    /// it is first asked for, since a frame asks for few of them.
+    images: Vec<OnceLock<FarImage>>,
 }
 
 impl FarField {
-    /// Builds the tables within so many MiB; `None` for a surface without relief, with edges that
+    /// The tables within so many MiB, none of them built yet; `None` for a surface without relief, with edges that
     /// do not repeat, or too small to need tables.
     pub(in crate::filter) fn new(surface: &Surface, mib: u32) -> Option<Self> {
         let num_texels = |level: &usize| surface.levels()[*level].size().iter().product::<usize>();
@@ -74,25 +78,23 @@ impl FarField {
             lengths,
             starts: table_starts(surface, first_level, mib),
             plane: grazing_depth(surface, first_level, &lengths),
+            source: 0,
             images: Vec::new(),
         };
-        far.images = far.build(surface);
+        far.source = far.source_level(surface);
+        far.images.resize_with(far.starts[NUM_LENGTHS], OnceLock::new);
         Some(far)
     }
 
-    /// The tables of all directions.
-    fn build(&self, surface: &Surface) -> Vec<FarImage> {
-        let size = surface.levels()[self.first_level].size();
-        let source = self.source_level(surface);
-        let directions =
-            (0..NUM_LENGTHS).flat_map(|i| (0..self.num_azimuths(i)).map(move |j| (i, j)));
-        let directions: Vec<_> = directions.collect();
-        let one = |(i, j)| {
-            let view = self.view(self.displacement(i, j));
-            FarImage::new(size, seen_image(surface, Seen::Colors, source, size, view))
-        };
-        // Collected by direction, whichever thread makes which.
-        directions.into_par_iter().map(one).collect()
+    /// A table by its number. Building one waits for nothing but itself, so a thread that wants one
+    /// which another builds waits for that alone.
+    pub(super) fn image(&self, surface: &Surface, index: usize) -> &FarImage {
+        self.images[index].get_or_init(|| {
+            let length = self.starts.partition_point(|start| *start <= index) - 1;
+            let view = self.view(self.displacement(length, index - self.starts[length]));
+            let size = surface.levels()[self.first_level].size();
+            FarImage::new(size, seen_image(surface, Seen::Colors, self.source, size, view))
+        })
     }
 
     /// The coarsest level, up to 1, whose sweep shows nearly what the base level's does: a quarter
