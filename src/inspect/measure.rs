@@ -63,7 +63,7 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
     let prepared = PreparedScene::new(scene);
     let asks_levels = matches!(view, View::Mip | View::Horizon);
     if asks_levels {
-        prepared.make_ready(settings);
+        prepared.make_ready(scene, settings);
     }
     let msaa = if view == View::Coverage { settings.msaa } else { 1 };
     let lighting = if view == View::Normal { Lighting::Lit } else { Lighting::Unlit };

@@ -7,6 +7,8 @@
 //!    lie in the texture, `filter` finds their texels, `light` shades them.
 //! 4. `raster` adds the colours up to pixels.
 
+mod exact;
+mod ground;
 mod prepared;
 mod shade;
 
@@ -88,7 +90,7 @@ impl Renderer {
     pub fn set_settings(&mut self, settings: Settings) -> Result<()> {
         // Checked first: settings that fail leave the renderer as it was.
         settings.validate()?;
-        self.prepared.make_ready(&settings);
+        self.prepared.make_ready(&self.scene, &settings);
         self.settings = settings;
         Ok(())
     }

@@ -1,11 +1,13 @@
 //! The prepared surface of each material.
 
 use crate::filter::Prepared;
+use crate::light::exact::Occluders;
+use crate::light::reflection::Reflectance;
 use crate::scene::Scene;
-use crate::settings::{Lighting, Settings};
+use crate::settings::{Filter, Lighting, Settings};
 use crate::texture::Surface;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Most texels of all surfaces together that far-field tables are built for: some seconds of work.
 /// Surfaces beyond, in the order of the materials, are drawn without.
@@ -20,6 +22,10 @@ pub(crate) struct PreparedScene {
     flat: Vec<Prepared>,
     /// The surface of each material that has one.
     of_material: Vec<Option<usize>>,
+    /// What lit frames ask for, made when the first of them does.
+    reflectance: OnceLock<Reflectance>,
+    /// What the truth's light asks for.
+    occluders: OnceLock<Occluders>,
 }
 
 impl PreparedScene {
@@ -58,18 +64,35 @@ impl PreparedScene {
             })
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
-        Self { surfaces, flat, of_material }
+        let (reflectance, occluders) = Default::default();
+        Self { surfaces, flat, of_material, reflectance, occluders }
     }
 
     /// Makes what frames with these settings need, so that no frame has to wait for it.
-    pub(crate) fn make_ready(&self, settings: &Settings) {
+    pub(crate) fn make_ready(&self, scene: &Scene, settings: &Settings) {
+        let is_lit = settings.lighting == Lighting::Lit;
+        if is_lit {
+            self.reflectance();
+        }
+        if is_lit && matches!(settings.filter, Filter::Truth(_)) {
+            self.occluders(scene);
+        }
         // Frames without relief draw the flat surfaces, which ask for none of this.
         if settings.parallax {
-            let is_lit = settings.lighting == Lighting::Lit;
             self.surfaces
                 .par_iter()
                 .for_each(|prepared| prepared.make_ready(&settings.filter, is_lit));
         }
+    }
+
+    /// How much surfaces reflect.
+    pub(crate) fn reflectance(&self) -> &Reflectance {
+        self.reflectance.get_or_init(Reflectance::new)
+    }
+
+    /// The triangles of the scene that this was made for.
+    pub(crate) fn occluders(&self, scene: &Scene) -> &Occluders {
+        self.occluders.get_or_init(|| Occluders::new(scene))
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.
