@@ -20,13 +20,15 @@ fn scene(wrap: Wrap, size: u32) -> Scene {
     let maps = |size, stones| SurfaceMaps { wrap, ..cobbles(size, stones) };
     let mut scene = floor_scene(Surface::new(maps(size, 4)).expect("valid maps"), 0.5);
     let wall = Surface::new(SurfaceMaps { relief_depth: 0.1, ..maps(48, 3) }).expect("valid maps");
-    scene.materials[0].specular = Vec3::splat(0.4);
+    scene.materials[0].roughness = 0.5;
     scene.materials.push(Material {
         surface: Some(Arc::new(wall)),
-        diffuse: Vec3::new(1.0, 0.7, 0.5),
+        base_color: Vec3::new(1.0, 0.7, 0.5),
+        metallic: 0.5,
+        emissive: Vec3::new(0.0, 0.0, 0.1),
         ..Material::default()
     });
-    scene.materials.push(Material { diffuse: Vec3::new(0.2, 0.3, 0.8), ..Material::default() });
+    scene.materials.push(Material { base_color: Vec3::new(0.2, 0.3, 0.8), ..Material::default() });
     let corners = [[-2.0, -0.5, 1.5], [1.5, -0.5, -1.0], [1.5, 2.0, -1.0], [-2.0, 2.0, 1.5]]
         .map(Vec3::from)
         .to_vec();

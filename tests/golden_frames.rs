@@ -318,7 +318,7 @@ fn frames_are_the_accepted_ones() {
 fn lit_relief_is_the_accepted_one() {
     let mut scene = floor(Wrap::Repeat);
     scene.sky = Sky::Color(Vec3::splat(0.1));
-    scene.materials[0].specular = Vec3::splat(0.4);
+    scene.materials[0].roughness = 0.5;
     // A low sun from the left, and a lamp over the middle.
     scene.lights = vec![
         Light::sun(Vec3::new(-1.0, 0.5, 0.0), Vec3::splat(0.9)),
@@ -346,6 +346,6 @@ fn an_edge_of_a_mesh_is_the_accepted_one() {
     let mut leaf = Mesh::new(corners, vec![], vec![], vec![[0, 1, 2]]);
     leaf.material = 1;
     scene.meshes.push(leaf);
-    scene.materials.push(Material { diffuse: Vec3::new(0.8, 0.3, 0.1), ..Material::default() });
+    scene.materials.push(Material { base_color: Vec3::new(0.8, 0.3, 0.1), ..Material::default() });
     check_frame("edge_msaa_8", &draw_with(scene, Settings { msaa: 8, ..Settings::default() }));
 }

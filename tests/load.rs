@@ -150,7 +150,7 @@ fn objects_and_materials_of_one_file_become_meshes() {
     let loaded = Files::new(obj, "newmtl red\nKd 1 0 0\n\nnewmtl blue\nKd 0 0 1\n").load();
     let names: Vec<_> = loaded.scene.meshes.iter().map(|m| (m.name.as_str(), m.material)).collect();
     assert_eq!(names, [("a", 0), ("a", 1), ("b", 1)]);
-    assert_eq!(loaded.scene.materials[1].diffuse, Vec3::Z);
+    assert_eq!(loaded.scene.materials[1].base_color, Vec3::Z);
 }
 
 #[test]
@@ -199,18 +199,28 @@ fn albedo_is_the_colour_map_in_linear_light_and_kd_beside_it() {
     files.image("a.png", one(255, 128, 0));
     let loaded = files.load();
     let material = &loaded.scene.materials[0];
-    assert_eq!(material.diffuse, Vec3::new(0.5, 0.25, 1.0));
-    assert_eq!((material.specular, material.shininess), (Vec3::new(0.1, 0.2, 0.3), 20.0));
+    assert_eq!(material.base_color, Vec3::new(0.5, 0.25, 1.0));
+    let alpha = material.roughness * material.roughness;
+    assert!((alpha * alpha - 2.0 / 22.0).abs() < 1e-6, "{alpha}");
     assert_eq!(material.surface.as_ref().expect("a surface").color_scale(), 1.0);
 }
 
-/// By the letter it is a highlight of no end, which washes out all that the light reaches.
 #[test]
-fn an_exponent_of_zero_is_no_highlight() {
-    let material = &Files::quad("Ks 0.8 0.8 0.8\nNs 0").load().scene.materials[0];
-    assert_eq!(material.specular, Vec3::ZERO);
-    let material = &Files::quad("Ks 0.8 0.8 0.8").load().scene.materials[0];
-    assert_eq!(material.specular, Vec3::splat(0.8));
+fn what_has_no_highlight_is_rough() {
+    for text in ["Ks 0.8 0.8 0.8\nNs 0", "Ks 0.8 0.8 0.8", "Ns 200", "Ks 0 0 0\nNs 200", ""] {
+        assert_eq!(Files::quad(text).load().scene.materials[0].roughness, 1.0, "{text}");
+    }
+}
+
+#[test]
+fn metal_roughness_and_emission_are_read() {
+    let text = "Ks 1 1 1\nNs 200\nPm 1\nPr 0.25\nKe 0.5 2 0";
+    let material = &Files::quad(text).load().scene.materials[0];
+    assert_eq!((material.metallic, material.roughness), (1.0, 0.25));
+    assert_eq!(material.emissive, Vec3::new(0.5, 2.0, 0.0));
+    let material = &Files::quad("pm 7\npr -1\nke 0.5").load().scene.materials[0];
+    assert_eq!((material.metallic, material.roughness), (1.0, 0.0), "cut to their ranges");
+    assert_eq!(material.emissive, Vec3::splat(0.5));
 }
 
 #[test]
@@ -226,7 +236,7 @@ fn several_mtl_files_on_one_line_are_all_read() {
     let files = Files::new(&QUAD.replace("s.mtl", "a.mtl s.mtl"), "newmtl stone\nKd 1 0 0\n");
     files.write("a.mtl", "newmtl other\nKd 0 1 0\n");
     let scene = files.load().scene;
-    assert_eq!(scene.materials[scene.meshes[0].material].diffuse, Vec3::X);
+    assert_eq!(scene.materials[scene.meshes[0].material].base_color, Vec3::X);
 }
 
 #[test]

@@ -221,16 +221,17 @@ fn scene() -> impl Strategy<Value = Scene> {
             false => Sky::Color(top.abs()),
         },
     );
-    let material =
-        (maps(), vector(), vector(), number()).prop_map(|(maps, diffuse, specular, shininess)| {
-            Material {
-                surface: Surface::new(maps).ok().map(Arc::new),
-                diffuse: diffuse.abs(),
-                specular: specular.abs(),
-                shininess: shininess.abs(),
-                ..Material::default()
-            }
-        });
+    let share = || prop_oneof![8 => 0.0..=1.0_f32, 1 => number()];
+    let material = (maps(), vector(), vector(), share(), share()).prop_map(
+        |(maps, base_color, emissive, metallic, roughness)| Material {
+            surface: Surface::new(maps).ok().map(Arc::new),
+            base_color: base_color.abs(),
+            emissive: emissive.abs(),
+            metallic,
+            roughness,
+            ..Material::default()
+        },
+    );
     let positive = |most: f32| prop_oneof![8 => 1e-3..most, 1 => number()];
     let camera = (
         vector(),

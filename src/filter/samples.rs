@@ -7,7 +7,7 @@ use crate::simd::PixelLanes;
 pub struct SampleOffsets {
     /// Eight samples at a time: x, y, and how many of them there are.
     pub groups: Vec<([PixelLanes; 2], usize)>,
-    /// Whether each ray is lit where it lies on the screen; else where the pixel's centre does, as
+    /// Whether each ray is lit by rays of its own, from its hit; else as the pixel's centre is, as
     /// shaders do.
     pub is_lit_apart: bool,
 }

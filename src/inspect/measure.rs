@@ -8,7 +8,7 @@ use crate::filter::{LevelChoice, Prepared, Scratch};
 use crate::footprint::{Ellipse, Footprint, Footprints};
 use crate::geometry;
 use crate::raster::{Drawn, Pool, QuadBlock, QuadPair, Rasterizer};
-use crate::render::{Ground, PreparedScene, Shader};
+use crate::render::{PreparedScene, Shader};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
@@ -164,9 +164,10 @@ impl Probe<'_> {
         let index = [block.material, block.group];
         let ground = self.prepared.ground(self.scene, self.asked, index);
         let ground = ground.filter(|_| self.view != View::Coverage);
-        let Some(Ground { prepared, is_lit, .. }) = ground else {
+        let Some(ground) = ground else {
             return block.pairs().map(|pair| self.of_plain(&pair)).collect();
         };
+        let (prepared, is_lit) = (ground.prepared, ground.asks_for_lights());
         // Made and chosen for the whole block, as frames do it.
         let (mut footprints, mut scratch) = (Vec::<Footprints>::new(), Scratch::default());
         self.shader.footprints(prepared, (block, 0..block.num_pairs()), &mut footprints);

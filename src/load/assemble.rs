@@ -144,21 +144,27 @@ fn plans(
 }
 
 fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
-    // Beyond these bounds a colour or exponent is a mistake in the file that need not stop the
-    // picture.
+    // Beyond these bounds a number is a mistake in the file that need not stop the picture.
     let color = |c: [f32; 3]| Vec3::from_array(c).clamp(Vec3::ZERO, Vec3::splat(1e6));
-    let exponent = |exponent: f32| exponent.clamp(0.0, 1e4);
+    let unit = |number: f32| number.clamp(0.0, 1.0);
     let fallback = Material::default();
-    // Exporters write `Ns 0` for a surface without a highlight; taken by the letter it is one of no
-    // end.
-    let specular = from.specular.filter(|_| from.shininess != Some(0.0));
+    let roughness = from.roughness.map(unit).or_else(|| roughness_of_highlight(from));
     Material {
         name: from.name.clone(),
-        diffuse: given.diffuse.or(from.diffuse.map(color)).unwrap_or(fallback.diffuse),
-        specular: given.specular.or(specular.map(color)).unwrap_or(fallback.specular),
-        shininess: given.shininess.or(from.shininess.map(exponent)).unwrap_or(fallback.shininess),
+        base_color: given.base_color.or(from.diffuse.map(color)).unwrap_or(fallback.base_color),
+        metallic: given.metallic.or(from.metallic.map(unit)).unwrap_or(fallback.metallic),
+        roughness: given.roughness.or(roughness).unwrap_or(fallback.roughness),
+        emissive: given.emissive.or(from.emissive.map(color)).unwrap_or(fallback.emissive),
         surface: None,
     }
+}
+
+/// The roughness whose lobe is as wide as a Blinn-Phong highlight: `alpha^2 = 2 / (Ns + 2)`. Of `Ks`
+/// it matters only whether there is a highlight at all: how strong it is follows from the material.
+fn roughness_of_highlight(from: &MtlMaterial) -> Option<f32> {
+    let is_seen = from.specular.is_some_and(|specular| specular.iter().any(|c| *c > 0.0));
+    let exponent = from.shininess.filter(|_| is_seen)?.clamp(0.0, 1e6);
+    Some((2.0 / (exponent + 2.0)).sqrt().sqrt())
 }
 
 /// A camera that sees all of the scene, and light from over its left shoulder.

@@ -47,12 +47,15 @@ pub struct MaterialOptions {
     /// What lies beyond a texture's edges; `None`: clamp where the MTL says `-clamp on`, else
     /// repeat.
     pub wrap: Option<Wrap>,
-    /// Diffuse colour, linear RGB, 0 to 1e6; `None`: `Kd`, else 1.
-    pub diffuse: Option<Vec3>,
-    /// Colour of highlights, linear RGB, 0 to 1e6; `None`: `Ks`, else 0.
-    pub specular: Option<Vec3>,
-    /// Blinn-Phong exponent, 0 to 1e4; `None`: `Ns`, else 32.
-    pub shininess: Option<f32>,
+    /// What multiplies the colour map, linear RGB, 0 to 1e6; `None`: `Kd`, else 1.
+    pub base_color: Option<Vec3>,
+    /// 0 for a dielectric, 1 for a metal; `None`: `Pm`, else 0.
+    pub metallic: Option<f32>,
+    /// How rough it is, 0 to 1; `None`: `Pr`, else that of the exponent `Ns` where `Ks` is not
+    /// black, else 1.
+    pub roughness: Option<f32>,
+    /// Light that it sends out, linear RGB, 0 to 1e6; `None`: `Ke`, else 0.
+    pub emissive: Option<Vec3>,
 }
 
 impl MaterialOptions {
@@ -66,9 +69,10 @@ impl MaterialOptions {
             relief_depth: self.relief_depth.or(other.relief_depth),
             normal_y: self.normal_y.or(other.normal_y),
             wrap: self.wrap.or(other.wrap),
-            diffuse: self.diffuse.or(other.diffuse),
-            specular: self.specular.or(other.specular),
-            shininess: self.shininess.or(other.shininess),
+            base_color: self.base_color.or(other.base_color),
+            metallic: self.metallic.or(other.metallic),
+            roughness: self.roughness.or(other.roughness),
+            emissive: self.emissive.or(other.emissive),
         }
     }
 }

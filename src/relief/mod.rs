@@ -7,6 +7,7 @@
 //! depth `S`; and the *hit* `q = b + t D` with the depth `t`, 0 to 1, at which the ray from the
 //! base coordinate `b` first meets the relief. Lanes are pixels.
 
+mod climb;
 pub mod directions;
 mod displacement;
 mod height_cells;
@@ -19,6 +20,7 @@ pub mod seen;
 mod shadow;
 mod walk;
 
+pub use climb::Climb;
 pub use displacement::{MAX_SLOPE, displacement, finite};
 pub use height_cells::{CellRays, HeightCells};
 pub use height_field::HeightField;

@@ -8,10 +8,13 @@
 //! 4. `raster` adds the colours up to pixels.
 
 mod baked;
+mod exact;
+mod ground;
 mod prepared;
 mod shade;
 
-pub(crate) use prepared::{Ground, PreparedScene};
+pub(crate) use ground::Ground;
+pub(crate) use prepared::PreparedScene;
 pub(crate) use shade::{ShadeScratch, Shader};
 
 use crate::error::Result;

@@ -1,12 +1,15 @@
 //! The prepared surface of each material.
 
 use super::baked::Baked;
+use super::ground::Ground;
 use crate::filter::Prepared;
-use crate::scene::{Material, Scene};
+use crate::light::exact::Occluders;
+use crate::light::reflection::Reflectance;
+use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::texture::Surface;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Most texels of all surfaces together that far-field tables are built for: some seconds of work.
 /// Surfaces beyond, in the order of the materials, are drawn without.
@@ -23,15 +26,10 @@ pub(crate) struct PreparedScene {
     of_material: Vec<Option<usize>>,
     /// Lit for good, with relief or without; `None` where lights are evaluated place by place.
     baked: Option<(bool, Baked)>,
-}
-
-/// What all pixels of a block lie on.
-#[derive(Clone, Copy)]
-pub(crate) struct Ground<'a> {
-    pub(crate) material: &'a Material,
-    pub(crate) prepared: &'a Prepared,
-    /// Whether its colours are yet to be lit.
-    pub(crate) is_lit: bool,
+    /// What lit frames ask for, made when the first of them does.
+    reflectance: OnceLock<Reflectance>,
+    /// What the truth's light asks for.
+    occluders: OnceLock<Occluders>,
 }
 
 impl PreparedScene {
@@ -70,16 +68,23 @@ impl PreparedScene {
             })
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
-        Self { surfaces, flat, of_material, baked: None }
+        let (reflectance, occluders) = Default::default();
+        Self { surfaces, flat, of_material, baked: None, reflectance, occluders }
     }
 
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
     /// it.
     pub(crate) fn make_ready(&mut self, scene: &Scene, settings: &Settings) {
         let is_lit = settings.lighting == Lighting::Lit;
+        if is_lit {
+            self.reflectance();
+        }
         // The truth lights each of its samples.
-        let samples = settings.filter.traits().samples;
-        if is_lit && !samples.is_some_and(|samples| samples.is_lit_apart) {
+        let is_exact = settings.filter.traits().samples.is_some_and(|rays| rays.is_lit_apart);
+        if is_lit && is_exact {
+            self.occluders(scene);
+        }
+        if is_lit && !is_exact {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
             baked.light(scene, self, settings.parallax);
@@ -98,6 +103,16 @@ impl PreparedScene {
         }
     }
 
+    /// How much surfaces reflect.
+    pub(crate) fn reflectance(&self) -> &Reflectance {
+        self.reflectance.get_or_init(Reflectance::new)
+    }
+
+    /// The triangles of the scene that this was made for.
+    pub(crate) fn occluders(&self, scene: &Scene) -> &Occluders {
+        self.occluders.get_or_init(|| Occluders::new(scene))
+    }
+
     /// The group in which a triangle is shaded, by the index of its mesh and in it.
     pub(crate) fn group(&self, scene: &Scene, triangle: [u32; 2]) -> u32 {
         self.baked.as_ref().map_or(0, |(_, baked)| baked.group(scene, triangle))
@@ -111,9 +126,16 @@ impl PreparedScene {
         [material, group]: [usize; 2],
     ) -> Option<Ground<'a>> {
         let baked = self.baked.as_ref().and_then(|(_, baked)| baked.of_group(group));
-        let prepared = baked.or_else(|| self.of_material(material, settings.parallax))?;
-        let is_lit = settings.lighting == Lighting::Lit && baked.is_none();
-        Some(Ground { material: &scene.materials[material], prepared, is_lit })
+        let unlit = self.of_material(material, settings.parallax)?;
+        let is_lit = settings.lighting == Lighting::Lit;
+        let material = &scene.materials[material];
+        Some(Ground {
+            material,
+            prepared: baked.unwrap_or(unlit),
+            unlit,
+            is_lit,
+            is_baked: baked.is_some(),
+        })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

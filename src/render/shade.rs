@@ -1,14 +1,17 @@
 //! The colours of a block of quads: footprints, filter, light.
 
-use super::prepared::{Ground, PreparedScene};
+use super::exact::Exact;
+use super::ground::{Ground, in_lanes, pixel_center, surface_point};
+use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Scratch, Traits, Work};
-use crate::footprint::{Footprint, FootprintRule, Footprints};
-use crate::light::{LocalLights, SurfacePoint};
-use crate::raster::{AttributePlanes, LitPlanes, Plane, Pool, QuadBlock, QuadPair};
+use crate::footprint::{FootprintRule, Footprints};
+use crate::light::LocalLights;
+use crate::light::exact::ExactLight;
+use crate::raster::{Pool, QuadBlock, QuadPair};
 use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
-use crate::texture::{FULL_F32, Texel};
+use crate::texture::Texel;
 use glam::Vec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -29,6 +32,8 @@ pub(crate) struct Shader<'a> {
     settings: &'a Settings,
     prepared: &'a PreparedScene,
     traits: Traits,
+    /// What lights each sample by itself, where that is asked for.
+    exact: Option<ExactLight<'a>>,
     pool: &'a Pool<ShadeScratch>,
     num_texels: [AtomicU64; 2],
 }
@@ -50,7 +55,11 @@ impl<'a> Shader<'a> {
         pool: &'a Pool<ShadeScratch>,
     ) -> Self {
         let traits = settings.filter.traits();
-        Self { scene, settings, prepared, traits, pool, num_texels: Default::default() }
+        let is_exact = settings.lighting == Lighting::Lit
+            && traits.samples.as_ref().is_some_and(|samples| samples.is_lit_apart);
+        let exact = is_exact.then(|| ExactLight { scene, occluders: prepared.occluders(scene) });
+        let num_texels = Default::default();
+        Self { scene, settings, prepared, traits, exact, pool, num_texels }
     }
 
     /// What filtering took so far.
@@ -63,12 +72,19 @@ impl<'a> Shader<'a> {
 
     /// Appends the linear colours of a block's pairs; those of helper lanes are anything.
     pub(super) fn shade(&self, block: &QuadBlock, colors: &mut Colors) {
+        let material = &self.scene.materials[block.material];
         let index = [block.material, block.group];
-        let Some(ground) = self.prepared.ground(self.scene, self.settings, index) else {
-            let material = &self.scene.materials[block.material];
+        let ground = self.prepared.ground(self.scene, self.settings, index);
+        let mut scratch = self.pool.take();
+        if let (Some(samples), Some(light)) = (&self.traits.samples, &self.exact) {
+            let (filter, is_traced) = (&self.settings.filter, self.traits.rule.is_traced);
+            let exact = Exact { light, samples, filter, is_traced, material, ground };
+            return colors
+                .extend(block.pairs().map(|pair| exact.colors(&pair, &mut scratch.filter)));
+        }
+        let Some(ground) = ground else {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
-        let mut scratch = self.pool.take();
         if let Some(samples) = &self.traits.samples {
             return colors.extend(
                 block.pairs().map(|pair| self.sampled(&ground, &pair, samples, &mut scratch)),
@@ -88,10 +104,9 @@ impl<'a> Shader<'a> {
             colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
                 Some(lights) => {
                     // Nothing bends the normal here: it is z in the surface's own frame.
-                    material.diffuse * lights.diffuse(Vec3::Z, &self.scene.sky)
-                        + lights.specular(Vec3::Z, material)
+                    self.lit_color(material, (material.base_color, false), Vec3::Z, &lights)
                 }
-                None => material.diffuse,
+                None => material.base_color,
             };
         }
         in_lanes(&colors)
@@ -110,7 +125,7 @@ impl<'a> Shader<'a> {
         // Find where the pixels lie in the texture.
         self.footprints(ground.prepared, (block, pairs.clone()), footprints);
         // List the lights of covered pixels alone, pair by pair and lane by lane.
-        if ground.is_lit {
+        if ground.asks_for_lights() {
             let pairs = pairs.clone().map(|index| block.pair(index));
             lights.extend(pairs.flat_map(|pair| {
                 pair.covered()
@@ -122,7 +137,7 @@ impl<'a> Shader<'a> {
         filtered.resize(pairs.len(), Filtered::default());
         let batch = Batch { pixels: footprints, lights, is_alone: false };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
-        if ground.is_lit {
+        if ground.asks_for_lights() {
             // Light the means; the lights come in the order in which they were listed.
             let mut lights = lights.iter();
             colors.extend(footprints.iter().zip(filtered.iter()).map(|(pixels, filtered)| {
@@ -172,7 +187,7 @@ impl<'a> Shader<'a> {
     ) -> [PixelLanes; 3] {
         let (mut sums, mut nums) = ([Vec3::ZERO; 8], [0.0; 8]);
         for groups in samples.groups.chunks(GROUPS_AT_ONCE) {
-            self.cast(ground, pair, (groups, samples.is_lit_apart), scratch);
+            self.cast(ground, pair, groups, scratch);
             let ShadeScratch { filter, footprints, lights, filtered } = &mut *scratch;
             filtered.resize(footprints.len(), Filtered::default());
             let batch = Batch { pixels: footprints, lights, is_alone: false };
@@ -195,13 +210,12 @@ impl<'a> Shader<'a> {
     }
 
     /// The rays of groups of samples and, under lights, what shines on each: of one covered pixel
-    /// of a pair after the other. Lights are those where a ray lies on the screen, or where its
-    /// pixel's centre does.
+    /// of a pair after the other. Lights are those at the pixel's centre, as shaders have them.
     fn cast(
         &self,
         ground: &Ground,
         pair: &QuadPair,
-        (groups, is_lit_apart): (&[([PixelLanes; 2], usize)], bool),
+        groups: &[([PixelLanes; 2], usize)],
         scratch: &mut ShadeScratch,
     ) {
         let ShadeScratch { footprints, lights, .. } = scratch;
@@ -216,34 +230,19 @@ impl<'a> Shader<'a> {
             for &([dx, dy], num_samples) in groups {
                 let (x, y) = (dx + center_x, dy + center_y);
                 let planes = pair.planes[lane / 4];
-                let rays = self.rays(ground, planes, ([x, y], num_samples), &pixels.lane(lane));
-                if ground.is_lit {
-                    lights.extend(rays.covered().filter_map(|i| {
-                        let own = [x.as_array()[i], y.as_array()[i]];
-                        let place = if is_lit_apart { own } else { [center_x, center_y] };
-                        self.lights_at(pair, lane, place)
-                    }));
+                let rays = ground.rays(
+                    planes,
+                    ([x, y], num_samples),
+                    (&pixels.lane(lane), self.traits.rule.is_traced),
+                );
+                if ground.asks_for_lights() {
+                    let center = [center_x, center_y];
+                    lights
+                        .extend(rays.covered().filter_map(|_| self.lights_at(pair, lane, center)));
                 }
                 footprints.push(rays);
             }
         }
-    }
-
-    /// The rays of up to eight samples of a pixel through places on the screen.
-    fn rays(
-        &self,
-        ground: &Ground,
-        planes: &AttributePlanes,
-        ([x, y], num_samples): ([PixelLanes; 2], usize),
-        pixel: &Footprint,
-    ) -> Footprints {
-        // Beyond the horizon there is no surface to sample.
-        let is_before = eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
-        // The last group may hold fewer than eight samples.
-        let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
-        let (uv, view) = planes.at(x, y);
-        let field = ground.prepared.field();
-        Footprints::of_samples((&uv, &view), field, self.traits.rule.is_traced, pixel, covered)
     }
 
     fn is_lit(&self) -> bool {
@@ -257,62 +256,39 @@ impl<'a> Shader<'a> {
 
     /// The colour of a filtered texel.
     fn lit(&self, ground: &Ground, texel: &Texel, lights: Option<&LocalLights>) -> Vec3 {
-        let color = Vec3::from(texel.color) * ground.material.diffuse * ground.scale();
+        let color = Vec3::from(texel.color) * ground.material.base_color * ground.scale();
         let Some(lights) = lights else { return color };
         let normal = Vec3::from(texel.normal);
-        let specular = lights.specular(normal, ground.material);
-        // Such a filter has the diffuse light in its mean, texel by texel; the highlight is left.
-        if self.traits.asks_for_lights {
-            color + specular
-        } else {
-            color * lights.diffuse(normal, &self.scene.sky) + specular
+        let has_light = self.traits.asks_for_lights;
+        self.lit_color(ground.material, (color, has_light), normal, lights)
+    }
+
+    /// A colour under lights; a filter that asks for lights has the diffuse part in its mean
+    /// already, texel by texel.
+    fn lit_color(
+        &self,
+        material: &Material,
+        (color, has_light): (Vec3, bool),
+        normal: Vec3,
+        lights: &LocalLights,
+    ) -> Vec3 {
+        let (sky, mut base) = (&self.scene.sky, color);
+        let mut diffuse = color;
+        if !has_light {
+            diffuse *= lights.diffuse(normal, sky);
+        } else if material.metallic > 0.0 {
+            // What has this colour in this light.
+            base /= lights.diffuse(normal, sky).max(Vec3::splat(1e-6));
         }
+        let reflected =
+            lights.reflected(normal, (material, base), sky, self.prepared.reflectance());
+        diffuse * reflected.diffuse_share + reflected.added
     }
 
     /// The lights at a place on the screen, if there is lighting.
-    fn lights_at(&self, pair: &QuadPair, lane: usize, [x, y]: [f32; 2]) -> Option<LocalLights> {
-        let planes: &AttributePlanes = pair.planes[lane / 4];
-        let lit = planes.lit.as_deref().filter(|_| self.is_lit())?;
-        let [a, b, c] = planes.inverse_w;
-        // Divided once for all twelve coordinates.
-        let w = 1.0 / (a * x + b * y + c);
-        let at = |planes: &[Plane; 3]| Vec3::from(planes.map(|[a, b, c]| (a * x + b * y + c) * w));
-        let LitPlanes { position, normal, tangent_u, tangent_v } = lit;
-        let point = SurfacePoint {
-            position: at(position),
-            normal: at(normal),
-            tangents: [at(tangent_u), at(tangent_v)],
-        };
+    fn lights_at(&self, pair: &QuadPair, lane: usize, place: [f32; 2]) -> Option<LocalLights> {
+        let point = self.is_lit().then(|| surface_point(pair.planes[lane / 4], place))??;
         let Scene { camera, lights, sky, .. } = self.scene;
         Some(LocalLights::at(&point, camera.eye, lights, sky))
     }
-}
-
-impl Ground<'_> {
-    /// What the unit of stored colours is worth.
-    fn scale(&self) -> f32 {
-        self.prepared.surface().color_scale() / FULL_F32
-    }
-
-    /// Stored colours as the material shows them.
-    #[inline(always)]
-    fn tinted(&self, stored: &[PixelLanes; 3]) -> [PixelLanes; 3] {
-        // Products in the order of `lit`, so that a colour without light has the same bits in both.
-        let scale = self.scale();
-        std::array::from_fn(|c| stored[c] * self.material.diffuse[c] * scale)
-    }
-}
-
-fn in_lanes(colors: &[Vec3; 8]) -> [PixelLanes; 3] {
-    [0, 1, 2].map(|c| PixelLanes::new(colors.map(|color| color[c])))
-}
-
-fn eval([a, b, c]: &Plane, x: PixelLanes, y: PixelLanes) -> PixelLanes {
-    x * *a + y * *b + *c
-}
-
-/// Where a lane's pixel has its centre on the screen.
-fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
-    let [x, y] = pair.pixel(lane);
-    [x as f32 + 0.5, y as f32 + 0.5]
 }

@@ -1,22 +1,27 @@
 //! What a surface is made of.
 
+use super::light::is_light;
 use crate::texture::Surface;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// What a surface is made of. Colours are linear RGB.
+/// What a surface is made of, in the terms of glTF 2.0. Colours are linear RGB.
 #[derive(Clone, Debug)]
 pub struct Material {
     /// Its name, for messages.
     pub name: String,
-    /// Diffuse colour; multiplies the surface's albedo (`Kd`). Default: 1, 1, 1.
-    pub diffuse: Vec3,
-    /// Colour of highlights (`Ks`). Default: 0.
-    pub specular: Vec3,
-    /// Blinn-Phong exponent (`Ns`), 0 to 1e4. Default: 32.
-    pub shininess: f32,
-    /// Textures and relief; `None` draws the plain diffuse colour. Shared between materials that
-    /// use the same maps.
+    /// What multiplies the surface's albedo, 0 to 1e6 (`Kd`): the diffuse colour of a dielectric,
+    /// the colour of a metal's reflections. Default: 1, 1, 1.
+    pub base_color: Vec3,
+    /// 0 for a dielectric, 1 for a metal (`Pm`). Default: 0.
+    pub metallic: f32,
+    /// How rough it is, 0 (a mirror) to 1 (`Pr`): the square root of GGX's alpha. Default: 1.
+    pub roughness: f32,
+    /// Light that it sends out by itself, 0 to 1e6 (`Ke`), seen under
+    /// [`Lighting::Lit`](crate::Lighting::Lit). It does not light others. Default: 0.
+    pub emissive: Vec3,
+    /// Textures and relief; `None` draws the plain base colour. Shared between materials that use
+    /// the same maps.
     pub surface: Option<Arc<Surface>>,
 }
 
@@ -24,9 +29,10 @@ impl Default for Material {
     fn default() -> Self {
         Self {
             name: String::new(),
-            diffuse: Vec3::ONE,
-            specular: Vec3::ZERO,
-            shininess: 32.0,
+            base_color: Vec3::ONE,
+            metallic: 0.0,
+            roughness: 1.0,
+            emissive: Vec3::ZERO,
             surface: None,
         }
     }
@@ -34,15 +40,13 @@ impl Default for Material {
 
 impl Material {
     pub(crate) fn validate(&self) -> Result<(), String> {
-        let colours = [self.diffuse, self.specular];
-        if !colours
-            .iter()
-            .all(|c| c.is_finite() && c.min_element() >= 0.0 && c.max_element() <= 1e6)
-        {
-            return Err("diffuse and specular must be within 0 to 1e6".into());
+        if !is_light(self.base_color) || !is_light(self.emissive) {
+            return Err("base_color and emissive must be within 0 to 1e6".into());
         }
-        if !(0.0..=1e4).contains(&self.shininess) {
-            return Err(format!("shininess {} is not within 0 to 1e4", self.shininess));
+        for (name, value) in [("metallic", self.metallic), ("roughness", self.roughness)] {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(format!("{name} {value} is not within 0 to 1"));
+            }
         }
         Ok(())
     }

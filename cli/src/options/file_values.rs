@@ -22,7 +22,6 @@ macro_rules! checked {
 checked! {
     above_zero: f32, check::above_zero;
     crease_angle: f32, check::crease_angle;
-    exponent: f32, check::exponent;
     field_of_view: f32, check::field_of_view;
     unit: f32, check::unit;
     direction: Vec3, check::direction;

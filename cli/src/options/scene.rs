@@ -70,19 +70,23 @@ pub(crate) struct MapOptions {
     #[arg(long, value_name = "HOW", value_parser = one_of(choices::WRAPS), requires = "model")]
     #[serde(with = "choices")]
     wrap: Option<Wrap>,
-    /// Diffuse colour, linear, which multiplies the colour image [default: Kd of the MTL file, else
-    /// 1]
+    /// Colour, linear, which multiplies the colour image [default: Kd of the MTL file, else 1]
     #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::intensity")]
-    diffuse: Option<Vec3>,
-    /// Colour of highlights, linear [default: Ks of the MTL file, else 0]
+    base_color: Option<Vec3>,
+    /// 0 for a dielectric, 1 for a metal [default: Pm of the MTL file, else 0]
+    #[arg(long, value_name = "M", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::unit")]
+    metallic: Option<f32>,
+    /// How rough surfaces are: 0 is a mirror, 1 has hardly a highlight [default: Pr of the MTL file,
+    /// else that of Ns, else 1]
+    #[arg(long, value_name = "R", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::unit")]
+    roughness: Option<f32>,
+    /// Light that surfaces send out, linear [default: Ke of the MTL file, else 0]
     #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::intensity")]
-    specular: Option<Vec3>,
-    /// Exponent of highlights, 0 to 10000; more is sharper [default: Ns of the MTL file, else 32]
-    #[arg(long, value_name = "N", value_parser = values::exponent, allow_hyphen_values = true, requires = "model")]
-    #[serde(deserialize_with = "file_values::exponent")]
-    shininess: Option<f32>,
+    emissive: Option<Vec3>,
 }
 
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -233,9 +237,10 @@ impl MapOptions {
             relief_depth: self.relief_depth,
             normal_y: self.normal_y,
             wrap: self.wrap,
-            diffuse: self.diffuse,
-            specular: self.specular,
-            shininess: self.shininess,
+            base_color: self.base_color,
+            metallic: self.metallic,
+            roughness: self.roughness,
+            emissive: self.emissive,
         }
     }
 }

@@ -82,11 +82,6 @@ pub(crate) fn unit(text: &str) -> Result<f32, String> {
     check::unit(number(text)?)
 }
 
-/// A Blinn-Phong exponent, 0 to 10000.
-pub(crate) fn exponent(text: &str) -> Result<f32, String> {
-    check::exponent(number(text)?)
-}
-
 /// Decibels, 0 or more.
 pub(crate) fn decibels(text: &str) -> Result<f64, String> {
     let value = number(text)?;
@@ -198,14 +193,6 @@ pub(crate) mod check {
             Ok(value)
         } else {
             Err("its size must be within 0 to 90 degrees".into())
-        }
-    }
-
-    pub(crate) fn exponent(value: f32) -> Result<f32, String> {
-        if (0.0..=1e4).contains(&value) {
-            Ok(value)
-        } else {
-            Err("must be within 0 to 10000".into())
         }
     }
 

@@ -27,6 +27,9 @@ fn spelled(keyword: &str) -> Option<&'static str> {
         "kd" => "Kd",
         "ks" => "Ks",
         "ns" => "Ns",
+        "pm" => "Pm",
+        "pr" => "Pr",
+        "ke" => "Ke",
         "map_kd" => "map_Kd",
         "bump" | "map_bump" => "map_Bump",
         "disp" | "map_disp" => "disp",
@@ -54,7 +57,7 @@ impl Clean for MtlLines {
         lines.insert(keyword, at.line);
         if rest.is_empty() {
             self.warnings.push(at.remark(format_args!("{word} names no file or value")));
-        } else if matches!(keyword, "Kd" | "Ks")
+        } else if matches!(keyword, "Kd" | "Ks" | "Ke")
             && (rest.starts_with("spectral") || rest.starts_with("xyz"))
         {
             self.warnings.push(at.remark(format_args!("{word} {rest} is not supported")));
@@ -70,8 +73,8 @@ impl Clean for MtlLines {
 /// What tobj shall read behind a keyword.
 fn values(keyword: &str, text: &str) -> std::result::Result<String, String> {
     match keyword {
-        "Kd" | "Ks" => color(text).map(|[r, g, b]| format!("{r} {g} {b}")),
-        "Ns" => number(text).map(|exponent| exponent.to_string()),
+        "Kd" | "Ks" | "Ke" => color(text).map(|[r, g, b]| format!("{r} {g} {b}")),
+        "Ns" | "Pm" | "Pr" => number(text).map(|number| number.to_string()),
         _ => Ok(text.into()),
     }
 }

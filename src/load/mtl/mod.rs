@@ -42,6 +42,12 @@ pub(super) struct MtlMaterial {
     pub(super) diffuse: Option<[f32; 3]>,
     pub(super) specular: Option<[f32; 3]>,
     pub(super) shininess: Option<f32>,
+    /// `Pm`.
+    pub(super) metallic: Option<f32>,
+    /// `Pr`.
+    pub(super) roughness: Option<f32>,
+    /// `Ke`.
+    pub(super) emissive: Option<[f32; 3]>,
     /// `map_Kd`.
     pub(super) albedo: Option<TextureRef>,
     /// `disp`, `map_disp`.
@@ -172,6 +178,7 @@ impl MtlFiles {
         path: &Arc<Path>,
     ) -> Result<MtlMaterial> {
         let unknown = |key: &str| from.unknown_param.get(key);
+        let number = |key: &str| unknown(key).and_then(|number| number.parse().ok());
         let mut texture = |keyword: &'static str, text: Option<&String>| {
             text.map(|text| {
                 let line = lines.get(keyword).copied().unwrap_or_default();
@@ -184,6 +191,9 @@ impl MtlFiles {
             diffuse: from.diffuse,
             specular: from.specular,
             shininess: from.shininess,
+            metallic: number("Pm"),
+            roughness: number("Pr"),
+            emissive: from.emissive,
             albedo: texture("map_Kd", from.diffuse_texture.as_ref())?,
             height: texture("disp", unknown("disp"))?,
             bump: texture("map_Bump", from.normal_texture.as_ref())?,

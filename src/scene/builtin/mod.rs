@@ -33,18 +33,12 @@ pub fn builtin() -> Scene {
     let materials = vec![
         Material {
             name: "street".into(),
-            specular: Vec3::splat(0.16),
-            shininess: 48.0,
+            // Worn smooth, and damp.
+            roughness: 0.45,
             surface: street,
             ..Material::default()
         },
-        Material {
-            name: "arch".into(),
-            specular: Vec3::splat(0.04),
-            shininess: 12.0,
-            surface: arch,
-            ..Material::default()
-        },
+        Material { name: "arch".into(), roughness: 0.65, surface: arch, ..Material::default() },
     ];
     Scene {
         meshes: vec![street_mesh(), arch_mesh()],

@@ -27,7 +27,7 @@ pub struct Environment {
     texels: Arc<[Vec3]>,
     turn: f64,
     /// Coefficients of the irradiance over pi in harmonics up to the second order.
-    harmonics: [DVec3; 9],
+    harmonics: Arc<[DVec3; 9]>,
 }
 
 impl Environment {
@@ -52,14 +52,13 @@ impl Environment {
         if !texels.iter().all(|texel| is_light(*texel)) {
             return refuse("its light must be within 0 to 1e6".into());
         }
-        // A comparison with NaN is false.
-        if !(turn_degrees.abs() <= 1e6) {
+        if !(-1e6..=1e6).contains(&turn_degrees) {
             return refuse("its turn must be within 1e6 degrees".into());
         }
         let turn = f64::from(turn_degrees) / 360.0;
         let mut picture =
             Self { size: [width, height], texels, turn, harmonics: Default::default() };
-        picture.harmonics = picture.irradiance_harmonics();
+        picture.harmonics = Arc::new(picture.irradiance_harmonics());
         Ok(picture)
     }
 

@@ -1,0 +1,109 @@
+//! Filtered albedo and normal with lights to a colour.
+
+use super::reflection::{self, DIELECTRIC, LEAST_COSINE, Reflectance};
+use super::surface_point::SurfacePoint;
+use crate::scene::{Light, Material, Sky};
+use glam::Vec3;
+
+/// The lights as one place of a surface sees them, in the frame of its texture: x along u, y along
+/// v, z off the surface.
+#[derive(Clone, Debug, Default)]
+pub struct LocalLights {
+    /// What the sky lights a white surface to that lies in the polygon.
+    pub ambient: Vec3,
+    /// Unit direction towards each light, and its intensity here.
+    pub lights: Vec<(Vec3, Vec3)>,
+    /// Unit direction to the eye.
+    pub to_eye: Vec3,
+    /// The frame's axes in the world.
+    pub axes: [Vec3; 3],
+}
+
+/// What light does with a surface: what the diffuse layer shows, and what comes on top of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Reflected {
+    /// What the diffuse colour is multiplied with: the part of light that is not reflected before.
+    pub diffuse_share: f32,
+    /// What is reflected of lights and sky, and what the surface sends out by itself.
+    pub added: Vec3,
+}
+
+impl LocalLights {
+    /// The lights at a point seen from `eye`. A surface seen from behind is lit on that side.
+    pub fn at(point: &SurfacePoint, eye: Vec3, lights: &[Light], sky: &Sky) -> Self {
+        let axes = point.axes(eye);
+        let [u, v, normal] = axes;
+        let local = |w: Vec3| Vec3::new(u.dot(w), v.dot(w), normal.dot(w));
+        let lights = lights.iter().map(|light| {
+            let (to_light, intensity) = match *light {
+                Light::Sun { to_light, intensity, .. } => (to_light.normalize_or_zero(), intensity),
+                Light::Point { position, intensity } => {
+                    let way = position - point.position;
+                    // The least distance keeps a light on the surface finite.
+                    (way.normalize_or_zero(), intensity / way.length_squared().max(1e-12))
+                }
+            };
+            (local(to_light), intensity)
+        });
+        let to_eye = local((eye - point.position).normalize_or_zero());
+        Self { ambient: sky.irradiance(normal), lights: lights.collect(), to_eye, axes }
+    }
+
+    /// What an albedo of 1 is multiplied with under a normal.
+    pub fn diffuse(&self, normal: Vec3, sky: &Sky) -> Vec3 {
+        let ambient =
+            if sky.is_uniform() { self.ambient } else { sky.irradiance(self.in_world(normal)) };
+        self.lights.iter().fold(ambient, |sum, (to_light, intensity)| {
+            sum + *intensity * normal.dot(*to_light).max(0.0)
+        })
+    }
+
+    /// What a material of base colour `base` does with the light under a mean normal.
+    pub fn reflected(
+        &self,
+        mean_normal: Vec3,
+        (material, base): (&Material, Vec3),
+        sky: &Sky,
+        reflectance: &Reflectance,
+    ) -> Reflected {
+        // Normals that cancel out leave no length to divide by, and rounding may make a mean too
+        // long.
+        let length = mean_normal.length().clamp(1e-3, 1.0);
+        let normal = mean_normal / length;
+        let alpha = reflection::alpha(material.roughness);
+        let alpha_squared = (alpha * alpha + 2.0 * (1.0 - length) / length).min(1.0);
+        let n_v = normal.dot(self.to_eye).max(LEAST_COSINE);
+        let straight = reflection::straight_reflection(material, base);
+        let [x, y] = reflectance.at(n_v, alpha_squared.sqrt());
+        let mut added = material.emissive;
+        added += (straight * x + y) * self.mirrored(normal, alpha_squared, sky);
+        for (to_light, intensity) in &self.lights {
+            let half = (*to_light + self.to_eye).normalize_or_zero();
+            let fresnel = reflection::grazing(half.dot(self.to_eye));
+            let share = straight + (Vec3::ONE - straight) * fresnel;
+            let n_l = normal.dot(*to_light);
+            added +=
+                *intensity * share * reflection::lobe(alpha_squared, n_v, n_l, normal.dot(half));
+        }
+        let left = 1.0 - (DIELECTRIC * x + y);
+        Reflected { diffuse_share: left * (1.0 - material.metallic), added }
+    }
+
+    /// The sky that a surface reflects, a blend of what a mirror shows and, the rougher, of all that
+    /// lies around that.
+    fn mirrored(&self, normal: Vec3, alpha_squared: f32, sky: &Sky) -> Vec3 {
+        if sky.is_uniform() {
+            return self.ambient;
+        }
+        let direction = normal * (2.0 * normal.dot(self.to_eye)) - self.to_eye;
+        let direction = self.in_world(direction);
+        let (sharp, wide) = (sky.radiance(direction), sky.irradiance(direction));
+        sharp + (wide - sharp) * alpha_squared.sqrt()
+    }
+
+    /// A direction of the frame in the world.
+    fn in_world(&self, direction: Vec3) -> Vec3 {
+        let [u, v, n] = self.axes;
+        (u * direction.x + v * direction.y + n * direction.z).normalize_or(n)
+    }
+}

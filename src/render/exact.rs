@@ -1,0 +1,114 @@
+//! Pixels under the truth's light: every sample of the screen is lit by rays from its own hit.
+
+use super::ground::{Ground, eval, in_lanes, pixel_center, surface_point};
+use crate::filter::{Batch, Filtered, SampleOffsets, Scratch};
+use crate::footprint::{Footprint, FootprintRule, Footprints};
+use crate::light::exact::{ExactLight, Hit, Sequence, Spot};
+use crate::raster::{AttributePlanes, QuadPair};
+use crate::scene::Material;
+use crate::settings::Filter;
+use crate::simd::{PixelLanes, set_bits};
+use glam::Vec3;
+
+/// Eight samples of a pixel, as they lie on the screen.
+struct Samples<'a> {
+    planes: &'a AttributePlanes,
+    x: PixelLanes,
+    y: PixelLanes,
+    num: usize,
+    /// The number of the first in the pixel.
+    first: u32,
+    sequence: Sequence,
+}
+
+/// Draws pixels of one material by samples that are each lit exactly.
+pub(super) struct Exact<'a> {
+    pub(super) light: &'a ExactLight<'a>,
+    pub(super) samples: &'a SampleOffsets,
+    pub(super) filter: &'a Filter,
+    /// Whether its rays are followed to the relief.
+    pub(super) is_traced: bool,
+    pub(super) material: &'a Material,
+    /// The material's texture, if it has one.
+    pub(super) ground: Option<Ground<'a>>,
+}
+
+impl Exact<'_> {
+    /// The colours of a pair of quads.
+    pub(super) fn colors(&self, pair: &QuadPair, scratch: &mut Scratch) -> [PixelLanes; 3] {
+        let mut colors = [Vec3::ZERO; 8];
+        let none = [PixelLanes::ZERO; 3];
+        let pixels =
+            Footprints::of_quads(&pair.uv, &none, None, &FootprintRule::FLAT, pair.covered_bits());
+        for lane in pair.covered() {
+            let [center_x, center_y] = pixel_center(pair, lane);
+            let sequence = Sequence::of_pixel(pair.pixel(lane));
+            let (mut sum, mut num_found) = (Vec3::ZERO, 0.0);
+            for (i, &([dx, dy], num)) in self.samples.groups.iter().enumerate() {
+                let (x, y) = (dx + center_x, dy + center_y);
+                let (planes, first) = (pair.planes[lane / 4], 8 * i as u32);
+                let samples = Samples { planes, x, y, num, first, sequence };
+                let (color, num) = match &self.ground {
+                    Some(ground) => self.on_texture(ground, &samples, &pixels.lane(lane), scratch),
+                    None => self.plain(&samples),
+                };
+                (sum, num_found) = (sum + color, num_found + num);
+            }
+            // A pixel none of whose rays meets the surface is black and not NaN.
+            colors[lane] = sum / f32::max(num_found, 1.0);
+        }
+        in_lanes(&colors)
+    }
+
+    /// The sum of the colours of samples on a texture, and how many there are.
+    fn on_texture(
+        &self,
+        ground: &Ground,
+        samples: &Samples,
+        pixel: &Footprint,
+        scratch: &mut Scratch,
+    ) -> (Vec3, f32) {
+        let Samples { planes, x, y, num, .. } = *samples;
+        let rays = ground.rays(planes, ([x, y], num), (pixel, self.is_traced));
+        let mut texels = [Filtered::default()];
+        let batch = Batch { pixels: &[rays], lights: &[], is_alone: false };
+        self.filter.colors(ground.prepared, &batch, scratch, &mut texels);
+        let [texels] = texels;
+        self.sum(samples, rays.covered, |lane| {
+            let (texel, ray) = (texels.lane(lane), rays.lane(lane));
+            let albedo = Vec3::from(texel.color) * ground.material.base_color * ground.scale();
+            let (relief, normal) = (ground.prepared.field(), Vec3::from(texel.normal));
+            Spot { relief, base: ray.base, place: ray.hit, albedo, normal }
+        })
+    }
+
+    /// The sum of the colours of samples without a texture, and how many there are.
+    fn plain(&self, samples: &Samples) -> (Vec3, f32) {
+        let Samples { planes, x, y, num, .. } = *samples;
+        let is_before = eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
+        let wanted = (0xff_u16 >> (8 - num)) as u8;
+        let (base, albedo, normal) = ([0.0; 2], self.material.base_color, Vec3::Z);
+        let spot = Spot { relief: None, base, place: base, albedo, normal };
+        self.sum(samples, is_before & wanted, |_| spot)
+    }
+
+    /// The sum of the colours of the samples that see a surface, one by one in their order, so that
+    /// the bits are always equal.
+    fn sum<'a>(
+        &self,
+        samples: &Samples,
+        covered: u8,
+        spot: impl Fn(usize) -> Spot<'a>,
+    ) -> (Vec3, f32) {
+        let (mut sum, mut num_found) = (Vec3::ZERO, 0.0);
+        for lane in set_bits(covered) {
+            let place = [samples.x.as_array()[lane], samples.y.as_array()[lane]];
+            // Planes of lit frames have all that makes a point.
+            let Some(point) = surface_point(samples.planes, place) else { continue };
+            let hit = Hit { point, material: self.material, spot: spot(lane) };
+            sum += self.light.shade(&hit, &samples.sequence, samples.first + lane as u32);
+            num_found += 1.0;
+        }
+        (sum, num_found)
+    }
+}

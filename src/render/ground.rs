@@ -1,0 +1,84 @@
+//! What pixels lie on: a material with its texture, and the polygon at places of the screen.
+
+use crate::filter::Prepared;
+use crate::footprint::{Footprint, Footprints};
+use crate::light::SurfacePoint;
+use crate::raster::{AttributePlanes, LitPlanes, Plane, QuadPair};
+use crate::scene::Material;
+use crate::simd::PixelLanes;
+use crate::texture::FULL_F32;
+use glam::Vec3;
+
+/// What all pixels of a block lie on.
+#[derive(Clone, Copy)]
+pub(crate) struct Ground<'a> {
+    pub(crate) material: &'a Material,
+    /// What is filtered, whose colours are lit already where [`Self::is_baked`].
+    pub(crate) prepared: &'a Prepared,
+    /// The same before light.
+    pub(crate) unlit: &'a Prepared,
+    /// Whether there is light.
+    pub(crate) is_lit: bool,
+    pub(crate) is_baked: bool,
+}
+
+impl Ground<'_> {
+    /// The rays of up to eight samples of a pixel through places on the screen.
+    pub(super) fn rays(
+        &self,
+        planes: &AttributePlanes,
+        ([x, y], num_samples): ([PixelLanes; 2], usize),
+        (pixel, is_traced): (&Footprint, bool),
+    ) -> Footprints {
+        // Beyond the horizon there is no surface to sample.
+        let is_before = eval(&planes.inverse_w, x, y).simd_gt(PixelLanes::ZERO).to_bitmask() as u8;
+        // The last group may hold fewer than eight samples.
+        let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
+        let (uv, view) = planes.at(x, y);
+        let field = self.prepared.field();
+        Footprints::of_samples((&uv, &view), field, is_traced, pixel, covered)
+    }
+
+    /// Whether lights are evaluated place by place.
+    pub(crate) fn asks_for_lights(&self) -> bool {
+        self.is_lit && !self.is_baked
+    }
+
+    /// What the unit of stored colours is worth.
+    pub(super) fn scale(&self) -> f32 {
+        self.prepared.surface().color_scale() / FULL_F32
+    }
+
+    /// Stored colours as the material shows them.
+    #[inline(always)]
+    pub(super) fn tinted(&self, stored: &[PixelLanes; 3]) -> [PixelLanes; 3] {
+        // Products in the order of `lit`, so that a colour without light has the same bits in both.
+        let scale = self.scale();
+        std::array::from_fn(|c| stored[c] * self.material.base_color[c] * scale)
+    }
+}
+
+pub(super) fn in_lanes(colors: &[Vec3; 8]) -> [PixelLanes; 3] {
+    [0, 1, 2].map(|c| PixelLanes::new(colors.map(|color| color[c])))
+}
+
+pub(super) fn eval([a, b, c]: &Plane, x: PixelLanes, y: PixelLanes) -> PixelLanes {
+    x * *a + y * *b + *c
+}
+
+/// Where a lane's pixel has its centre on the screen.
+pub(super) fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
+    let [x, y] = pair.pixel(lane);
+    [x as f32 + 0.5, y as f32 + 0.5]
+}
+
+/// The polygon's point at a place of the screen; `None` without lighting.
+pub(super) fn surface_point(planes: &AttributePlanes, [x, y]: [f32; 2]) -> Option<SurfacePoint> {
+    let LitPlanes { position, normal, tangent_u, tangent_v } = planes.lit.as_deref()?;
+    let [a, b, c] = planes.inverse_w;
+    // Divided once for all twelve coordinates.
+    let w = 1.0 / (a * x + b * y + c);
+    let at = |planes: &[Plane; 3]| Vec3::from(planes.map(|[a, b, c]| (a * x + b * y + c) * w));
+    let tangents = [at(tangent_u), at(tangent_v)];
+    Some(SurfacePoint { position: at(position), normal: at(normal), tangents })
+}
