@@ -20,6 +20,7 @@ fn scene(wrap: Wrap, size: u32) -> Scene {
     let maps = |size, stones| SurfaceMaps { wrap, ..cobbles(size, stones) };
     let mut scene = floor_scene(Surface::new(maps(size, 4)).expect("valid maps"), 0.5);
     let wall = Surface::new(SurfaceMaps { relief_depth: 0.1, ..maps(48, 3) }).expect("valid maps");
+    scene.materials[0].specular = 1.0;
     scene.materials[0].roughness = 0.5;
     scene.materials.push(Material {
         surface: Some(Arc::new(wall)),

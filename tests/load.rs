@@ -208,7 +208,8 @@ fn albedo_is_the_colour_map_in_linear_light_and_kd_beside_it() {
 #[test]
 fn what_has_no_highlight_is_rough() {
     for text in ["Ks 0.8 0.8 0.8\nNs 0", "Ks 0.8 0.8 0.8", "Ns 200", "Ks 0 0 0\nNs 200", ""] {
-        assert_eq!(Files::quad(text).load().scene.materials[0].roughness, 1.0, "{text}");
+        let material = &Files::quad(text).load().scene.materials[0];
+        assert_eq!((material.specular, material.roughness), (0.0, 1.0), "{text}");
     }
 }
 
@@ -216,7 +217,7 @@ fn what_has_no_highlight_is_rough() {
 fn metal_roughness_and_emission_are_read() {
     let text = "Ks 1 1 1\nNs 200\nPm 1\nPr 0.25\nKe 0.5 2 0";
     let material = &Files::quad(text).load().scene.materials[0];
-    assert_eq!((material.metallic, material.roughness), (1.0, 0.25));
+    assert_eq!((material.metallic, material.specular, material.roughness), (1.0, 1.0, 0.25));
     assert_eq!(material.emissive, Vec3::new(0.5, 2.0, 0.0));
     let material = &Files::quad("pm 7\npr -1\nke 0.5").load().scene.materials[0];
     assert_eq!((material.metallic, material.roughness), (1.0, 0.0), "cut to their ranges");

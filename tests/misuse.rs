@@ -222,12 +222,13 @@ fn scene() -> impl Strategy<Value = Scene> {
         },
     );
     let share = || prop_oneof![8 => 0.0..=1.0_f32, 1 => number()];
-    let material = (maps(), vector(), vector(), share(), share()).prop_map(
-        |(maps, base_color, emissive, metallic, roughness)| Material {
+    let material = (maps(), vector(), vector(), share(), share(), share()).prop_map(
+        |(maps, base_color, emissive, metallic, specular, roughness)| Material {
             surface: Surface::new(maps).ok().map(Arc::new),
             base_color: base_color.abs(),
             emissive: emissive.abs(),
             metallic,
+            specular,
             roughness,
             ..Material::default()
         },

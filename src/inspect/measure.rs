@@ -170,7 +170,8 @@ impl Probe<'_> {
         let (prepared, is_lit) = (ground.prepared, ground.asks_for_lights());
         // Made and chosen for the whole block, as frames do it.
         let (mut footprints, mut scratch) = (Vec::<Footprints>::new(), Scratch::default());
-        self.shader.footprints(prepared, (block, 0..block.num_pairs()), &mut footprints);
+        let with = (prepared, &self.shader.traits.rule);
+        self.shader.footprints(with, (block, 0..block.num_pairs()), &mut footprints);
         let choices = if self.asks_levels {
             self.settings.filter.levels(prepared, &footprints, is_lit, &mut scratch)
         } else {

@@ -1,6 +1,6 @@
 //! Filtered albedo and normal with lights to a colour.
 
-use super::reflection::{self, DIELECTRIC, LEAST_COSINE, Reflectance};
+use super::reflection::{self, Fresnel, LEAST_COSINE, Reflectance};
 use super::surface_point::SurfacePoint;
 use crate::scene::{Light, Material, Sky};
 use glam::Vec3;
@@ -73,19 +73,18 @@ impl LocalLights {
         let alpha = reflection::alpha(material.roughness);
         let alpha_squared = (alpha * alpha + 2.0 * (1.0 - length) / length).min(1.0);
         let n_v = normal.dot(self.to_eye).max(LEAST_COSINE);
-        let straight = reflection::straight_reflection(material, base);
-        let [x, y] = reflectance.at(n_v, alpha_squared.sqrt());
+        let fresnel = Fresnel::new(material, base);
+        let of_sky = reflectance.at(n_v, alpha_squared.sqrt());
         let mut added = material.emissive;
-        added += (straight * x + y) * self.mirrored(normal, alpha_squared, sky);
+        added += fresnel.of_sky(of_sky) * self.mirrored(normal, alpha_squared, sky);
         for (to_light, intensity) in &self.lights {
             let half = (*to_light + self.to_eye).normalize_or_zero();
-            let fresnel = reflection::grazing(half.dot(self.to_eye));
-            let share = straight + (Vec3::ONE - straight) * fresnel;
+            let share = fresnel.at(half.dot(self.to_eye));
             let n_l = normal.dot(*to_light);
             added +=
                 *intensity * share * reflection::lobe(alpha_squared, n_v, n_l, normal.dot(half));
         }
-        let left = 1.0 - (DIELECTRIC * x + y);
+        let left = 1.0 - Fresnel::of_dielectric(material).of_sky(of_sky).x;
         Reflected { diffuse_share: left * (1.0 - material.metallic), added }
     }
 

@@ -19,5 +19,5 @@ pub mod reflection;
 mod surface_point;
 
 pub use bake::{Beam, TextureFrame, baked};
-pub use local::LocalLights;
+pub use local::{LocalLights, Reflected};
 pub use surface_point::SurfacePoint;

@@ -3,11 +3,12 @@
 //! ```text
 //! D = a^2 / (pi ((n.h)^2 (a^2 - 1) + 1)^2)                                   Trowbridge, Reitz 1975
 //! V = 1 / (2 (n.l sqrt((n.v)^2 (1 - a^2) + a^2) + n.v sqrt((n.l)^2 (1 - a^2) + a^2)))    Heitz 2014
-//! F = F0 + (1 - F0) (1 - v.h)^5                                                      Schlick 1994
+//! F = F0 + (F90 - F0) (1 - v.h)^5                                                    Schlick 1994
 //! ```
 //!
-//! with `a` the square of the roughness, and `F0` 0.04 of a dielectric, the base colour of a metal.
-//! What a surface reflects of a sky of 1 is `F0 x + y`, and both depend on `n.v` and `a` only
+//! with `a` the square of the roughness; `F0` is 0.04 and `F90` 1 of a dielectric, both times its
+//! `specular`, and the base colour and 1 of a metal ([`Fresnel`]).
+//! What a surface reflects of a sky of 1 is `F0 x + F90 y`, and both depend on `n.v` and `a` only
 //! ([`Reflectance`]). What is reflected does not get to the diffuse layer below.
 
 use crate::scene::Material;
@@ -15,7 +16,7 @@ use crate::scene::angle::cos_sin;
 use glam::{DVec3, Vec3};
 
 /// What a dielectric reflects of light that comes straight: an index of refraction of 1.5.
-pub const DIELECTRIC: f32 = 0.04;
+const DIELECTRIC: f32 = 0.04;
 
 /// Least `a`: smoother surfaces would show a point light as a dot of any brightness.
 const LEAST_ALPHA: f32 = 0.002;
@@ -28,13 +29,46 @@ pub fn alpha(roughness: f32) -> f32 {
     (roughness * roughness).max(LEAST_ALPHA)
 }
 
-/// What a material reflects of light that comes straight, linear RGB; `base` is its base colour.
-pub fn straight_reflection(material: &Material, base: Vec3) -> Vec3 {
-    Vec3::splat(DIELECTRIC * (1.0 - material.metallic)) + base * material.metallic
+/// What a surface reflects of light, by where it comes from.
+#[derive(Clone, Copy, Debug)]
+pub struct Fresnel {
+    /// Of light that comes straight, linear RGB: F0.
+    pub straight: Vec3,
+    /// Of light along the surface: F90.
+    pub grazing: f32,
 }
 
-/// Schlick's share of `1 - F0` at a cosine to the half vector: `(1 - c)^5`.
-pub fn grazing(cosine: f32) -> f32 {
+impl Fresnel {
+    /// Of a material whose base colour is `base` at the place.
+    pub fn new(material: &Material, base: Vec3) -> Self {
+        let Fresnel { straight, grazing } = Self::of_dielectric(material);
+        let metallic = material.metallic;
+        Self {
+            straight: straight * (1.0 - metallic) + base * metallic,
+            grazing: grazing * (1.0 - metallic) + metallic,
+        }
+    }
+
+    /// Of what a material has of a dielectric.
+    pub fn of_dielectric(material: &Material) -> Self {
+        let specular = material.specular;
+        Self { straight: Vec3::splat(DIELECTRIC * specular), grazing: specular }
+    }
+
+    /// At a cosine to the half vector, after Schlick.
+    pub fn at(&self, cosine: f32) -> Vec3 {
+        let Self { straight, grazing: all } = *self;
+        straight + (Vec3::splat(all) - straight) * grazing(cosine)
+    }
+
+    /// Of a sky of 1, by what [`Reflectance::at`] says.
+    pub fn of_sky(&self, [x, y]: [f32; 2]) -> Vec3 {
+        self.straight * x + self.grazing * y
+    }
+}
+
+/// Schlick's `(1 - c)^5`.
+fn grazing(cosine: f32) -> f32 {
     let c = (1.0 - cosine).clamp(0.0, 1.0);
     c * c * c * c * c
 }
@@ -78,7 +112,7 @@ pub fn reflected(alpha: f64, to_eye: DVec3, [x, y]: [f64; 2]) -> (DVec3, f64, f6
 /// How much of a sky of 1 a surface reflects.
 #[derive(Clone, Debug)]
 pub struct Reflectance {
-    /// `[x, y]` of `F0 x + y`, by roughness and `n.v`, each from 0 to 1.
+    /// `[x, y]` of `F0 x + F90 y`, by roughness and `n.v`, each from 0 to 1.
     table: Vec<[f32; 2]>,
 }
 
@@ -97,7 +131,7 @@ impl Reflectance {
         Self { table: entries.collect() }
     }
 
-    /// `[x, y]` of `F0 x + y`, at `n.v` and `a`.
+    /// `[x, y]` of `F0 x + F90 y`, at `n.v` and `a`.
     pub fn at(&self, n_v: f32, alpha: f32) -> [f32; 2] {
         let place = |c: f32| {
             let place = c.clamp(0.0, 1.0) * (SIDE - 1) as f32;

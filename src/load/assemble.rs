@@ -149,9 +149,11 @@ fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
     let unit = |number: f32| number.clamp(0.0, 1.0);
     let fallback = Material::default();
     let roughness = from.roughness.map(unit).or_else(|| roughness_of_highlight(from));
+    let reflects = roughness.or(given.roughness).or(from.metallic).is_some();
     Material {
         name: from.name.clone(),
         base_color: given.base_color.or(from.diffuse.map(color)).unwrap_or(fallback.base_color),
+        specular: given.specular.unwrap_or(f32::from(u8::from(reflects))),
         metallic: given.metallic.or(from.metallic.map(unit)).unwrap_or(fallback.metallic),
         roughness: given.roughness.or(roughness).unwrap_or(fallback.roughness),
         emissive: given.emissive.or(from.emissive.map(color)).unwrap_or(fallback.emissive),

@@ -51,6 +51,9 @@ pub struct MaterialOptions {
     pub base_color: Option<Vec3>,
     /// 0 for a dielectric, 1 for a metal; `None`: `Pm`, else 0.
     pub metallic: Option<f32>,
+    /// How strongly a dielectric reflects, 0 to 1; `None`: 1 where the MTL has a `Ks` that is not
+    /// black, `Pr` or `Pm`, or `roughness` is given here, else 0.
+    pub specular: Option<f32>,
     /// How rough it is, 0 to 1; `None`: `Pr`, else that of the exponent `Ns` where `Ks` is not
     /// black, else 1.
     pub roughness: Option<f32>,
@@ -71,6 +74,7 @@ impl MaterialOptions {
             wrap: self.wrap.or(other.wrap),
             base_color: self.base_color.or(other.base_color),
             metallic: self.metallic.or(other.metallic),
+            specular: self.specular.or(other.specular),
             roughness: self.roughness.or(other.roughness),
             emissive: self.emissive.or(other.emissive),
         }

@@ -6,7 +6,7 @@ use crate::light::SurfacePoint;
 use crate::raster::{AttributePlanes, LitPlanes, Plane, QuadPair};
 use crate::scene::Material;
 use crate::simd::PixelLanes;
-use crate::texture::FULL_F32;
+use crate::texture::{FULL_F32, Surface, Texel};
 use glam::Vec3;
 
 /// What all pixels of a block lie on.
@@ -42,6 +42,12 @@ impl Ground<'_> {
     /// Whether lights are evaluated place by place.
     pub(crate) fn asks_for_lights(&self) -> bool {
         self.is_lit && !self.is_baked
+    }
+
+    /// The colour of a surface's texel as the material shows it.
+    pub(super) fn color_of(&self, surface: &Surface, texel: &Texel) -> Vec3 {
+        let scale = surface.color_scale() / FULL_F32;
+        Vec3::from(texel.color) * self.material.base_color * scale
     }
 
     /// What the unit of stored colours is worth.

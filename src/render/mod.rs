@@ -11,9 +11,9 @@ mod baked;
 mod exact;
 mod ground;
 mod prepared;
+mod reflections;
 mod shade;
 
-pub(crate) use ground::Ground;
 pub(crate) use prepared::PreparedScene;
 pub(crate) use shade::{ShadeScratch, Shader};
 

@@ -5,8 +5,8 @@ use super::ground::{Ground, in_lanes, pixel_center, surface_point};
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Scratch, Traits, Work};
 use crate::footprint::{FootprintRule, Footprints};
-use crate::light::LocalLights;
 use crate::light::exact::ExactLight;
+use crate::light::{LocalLights, Reflected};
 use crate::raster::{Pool, QuadBlock, QuadPair};
 use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Most pairs of quads whose footprints are made at once: they stay in the first cache, and are a
 /// whole number of the horizon's patches.
-const PAIRS_AT_ONCE: usize = 64;
+pub(super) const PAIRS_AT_ONCE: usize = 64;
 
 /// Groups of eight samples whose rays are filtered at once, for each pixel of a pair: as many
 /// footprints as those of pairs.
@@ -31,7 +31,7 @@ pub(crate) struct Shader<'a> {
     scene: &'a Scene,
     settings: &'a Settings,
     prepared: &'a PreparedScene,
-    traits: Traits,
+    pub(crate) traits: Traits,
     /// What lights each sample by itself, where that is asked for.
     exact: Option<ExactLight<'a>>,
     pool: &'a Pool<ShadeScratch>,
@@ -41,10 +41,10 @@ pub(crate) struct Shader<'a> {
 /// Buffers of shading, kept between blocks.
 #[derive(Debug, Default)]
 pub(crate) struct ShadeScratch {
-    filter: Scratch,
-    footprints: Vec<Footprints>,
-    lights: Vec<LocalLights>,
-    filtered: Vec<Filtered>,
+    pub(super) filter: Scratch,
+    pub(super) footprints: Vec<Footprints>,
+    pub(super) lights: Vec<LocalLights>,
+    pub(super) filtered: Vec<Filtered>,
 }
 
 impl<'a> Shader<'a> {
@@ -85,14 +85,19 @@ impl<'a> Shader<'a> {
         let Some(ground) = ground else {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
+        let start = colors.len();
         if let Some(samples) = &self.traits.samples {
-            return colors.extend(
+            colors.extend(
                 block.pairs().map(|pair| self.sampled(&ground, &pair, samples, &mut scratch)),
             );
+        } else {
+            for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
+                let end = block.num_pairs().min(first + PAIRS_AT_ONCE);
+                self.filtered(&ground, (block, first..end), &mut scratch, colors);
+            }
         }
-        for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
-            let end = block.num_pairs().min(first + PAIRS_AT_ONCE);
-            self.filtered(&ground, (block, first..end), &mut scratch, colors);
+        if ground.is_baked {
+            self.reflect(&ground, block, &mut scratch, &mut colors[start..]);
         }
     }
 
@@ -123,7 +128,8 @@ impl<'a> Shader<'a> {
         let ShadeScratch { filter, footprints, lights, filtered } = scratch;
         lights.clear();
         // Find where the pixels lie in the texture.
-        self.footprints(ground.prepared, (block, pairs.clone()), footprints);
+        let with = (ground.prepared, &self.traits.rule);
+        self.footprints(with, (block, pairs.clone()), footprints);
         // List the lights of covered pixels alone, pair by pair and lane by lane.
         if ground.asks_for_lights() {
             let pairs = pairs.clone().map(|index| block.pair(index));
@@ -152,27 +158,27 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// The footprints of pairs of a block, as the filter wants them.
+    /// The footprints of pairs of a block, by a rule.
     pub(crate) fn footprints(
         &self,
-        prepared: &Prepared,
+        (prepared, rule): (&Prepared, &FootprintRule),
         (block, pairs): (&QuadBlock, Range<usize>),
         footprints: &mut Vec<Footprints>,
     ) {
         let field = prepared.field();
         footprints.clear();
-        if let Some(field) = field.filter(|_| self.traits.rule.is_traced) {
+        if let Some(field) = field.filter(|_| rule.is_traced) {
             footprints.extend(pairs.map(|index| {
                 let pair = block.pair(index);
                 Footprints::before_hits(&pair.uv, &pair.view(), field, pair.covered_bits())
             }));
-            return Footprints::find_hits(footprints, field, &self.traits.rule);
+            return Footprints::find_hits(footprints, field, rule);
         }
         footprints.extend(pairs.map(|index| {
             let pair = block.pair(index);
             // Where there is no relief, the view changes nothing and is not computed.
             let view = if field.is_some() { pair.view() } else { [PixelLanes::ZERO; 3] };
-            Footprints::of_quads(&pair.uv, &view, field, &self.traits.rule, pair.covered_bits())
+            Footprints::of_quads(&pair.uv, &view, field, rule, pair.covered_bits())
         }));
     }
 
@@ -249,14 +255,14 @@ impl<'a> Shader<'a> {
         self.settings.lighting == Lighting::Lit
     }
 
-    fn count(&self, work: Work) {
+    pub(super) fn count(&self, work: Work) {
         self.num_texels[0].fetch_add(work.num_tested, Ordering::Relaxed);
         self.num_texels[1].fetch_add(work.num_averaged, Ordering::Relaxed);
     }
 
     /// The colour of a filtered texel.
     fn lit(&self, ground: &Ground, texel: &Texel, lights: Option<&LocalLights>) -> Vec3 {
-        let color = Vec3::from(texel.color) * ground.material.base_color * ground.scale();
+        let color = ground.color_of(ground.prepared.surface(), texel);
         let Some(lights) = lights else { return color };
         let normal = Vec3::from(texel.normal);
         let has_light = self.traits.asks_for_lights;
@@ -280,13 +286,29 @@ impl<'a> Shader<'a> {
             // What has this colour in this light.
             base /= lights.diffuse(normal, sky).max(Vec3::splat(1e-6));
         }
-        let reflected =
-            lights.reflected(normal, (material, base), sky, self.prepared.reflectance());
+        let reflected = self.reflected(material, base, normal, lights);
         diffuse * reflected.diffuse_share + reflected.added
     }
 
+    /// What a material whose base colour is `base` does with lights.
+    pub(super) fn reflected(
+        &self,
+        material: &Material,
+        base: Vec3,
+        normal: Vec3,
+        lights: &LocalLights,
+    ) -> Reflected {
+        let reflectance = self.prepared.reflectance();
+        lights.reflected(normal, (material, base), &self.scene.sky, reflectance)
+    }
+
     /// The lights at a place on the screen, if there is lighting.
-    fn lights_at(&self, pair: &QuadPair, lane: usize, place: [f32; 2]) -> Option<LocalLights> {
+    pub(super) fn lights_at(
+        &self,
+        pair: &QuadPair,
+        lane: usize,
+        place: [f32; 2],
+    ) -> Option<LocalLights> {
         let point = self.is_lit().then(|| surface_point(pair.planes[lane / 4], place))??;
         let Scene { camera, lights, sky, .. } = self.scene;
         Some(LocalLights::at(&point, camera.eye, lights, sky))

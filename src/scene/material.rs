@@ -15,6 +15,10 @@ pub struct Material {
     pub base_color: Vec3,
     /// 0 for a dielectric, 1 for a metal (`Pm`). Default: 0.
     pub metallic: f32,
+    /// How strongly a dielectric reflects, 0 to 1: 0 is matte, 1 is glTF's dielectric, which reflects
+    /// 0.04 of light that comes straight and all of it along the surface (`KHR_materials_specular`).
+    /// Default: 0.
+    pub specular: f32,
     /// How rough it is, 0 (a mirror) to 1 (`Pr`): the square root of GGX's alpha. Default: 1.
     pub roughness: f32,
     /// Light that it sends out by itself, 0 to 1e6 (`Ke`), seen under
@@ -31,6 +35,7 @@ impl Default for Material {
             name: String::new(),
             base_color: Vec3::ONE,
             metallic: 0.0,
+            specular: 0.0,
             roughness: 1.0,
             emissive: Vec3::ZERO,
             surface: None,
@@ -39,11 +44,21 @@ impl Default for Material {
 }
 
 impl Material {
+    /// Whether all that it shows of light is diffuse.
+    pub(crate) fn is_matte(&self) -> bool {
+        self.metallic == 0.0 && self.specular == 0.0
+    }
+
     pub(crate) fn validate(&self) -> Result<(), String> {
         if !is_light(self.base_color) || !is_light(self.emissive) {
             return Err("base_color and emissive must be within 0 to 1e6".into());
         }
-        for (name, value) in [("metallic", self.metallic), ("roughness", self.roughness)] {
+        let shares = [
+            ("metallic", self.metallic),
+            ("specular", self.specular),
+            ("roughness", self.roughness),
+        ];
+        for (name, value) in shares {
             if !(0.0..=1.0).contains(&value) {
                 return Err(format!("{name} {value} is not within 0 to 1"));
             }

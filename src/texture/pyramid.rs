@@ -83,7 +83,8 @@ fn halve_even(texels: &[PackedTexel], w: usize, num_planes: usize) -> Vec<Packed
                 let mean = |plane: usize| {
                     let sum =
                         |shift: u32| four.iter().map(|t| t[plane] >> shift & 0xffff).sum::<u32>();
-                    (sum(0) + 2) / 4 | (sum(16) + 2) / 4 << 16
+                    let [low, high] = [sum(0), sum(16)].map(|sum| (sum + 2) / 4);
+                    low | high << 16
                 };
                 *texel = [mean(0), mean(1), 0];
                 if num_planes == 3 {

@@ -78,6 +78,11 @@ pub(crate) struct MapOptions {
     #[arg(long, value_name = "M", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::unit")]
     metallic: Option<f32>,
+    /// How strongly what is no metal reflects: 0 is matte, 1 as in glTF [default: 1 where the MTL
+    /// file or --roughness says how rough it is, else 0]
+    #[arg(long, value_name = "S", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
+    #[serde(deserialize_with = "file_values::unit")]
+    specular: Option<f32>,
     /// How rough surfaces are: 0 is a mirror, 1 has hardly a highlight [default: Pr of the MTL file,
     /// else that of Ns, else 1]
     #[arg(long, value_name = "R", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
@@ -239,6 +244,7 @@ impl MapOptions {
             wrap: self.wrap,
             base_color: self.base_color,
             metallic: self.metallic,
+            specular: self.specular,
             roughness: self.roughness,
             emissive: self.emissive,
         }

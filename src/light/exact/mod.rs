@@ -24,7 +24,7 @@ mod sequence;
 pub use occluders::{LightRay, Occluders};
 pub use sequence::Sequence;
 
-use super::reflection::{self, DIELECTRIC, LEAST_COSINE};
+use super::reflection::{self, Fresnel, LEAST_COSINE};
 use super::surface_point::SurfacePoint;
 use crate::relief::{Climb, HeightField};
 use crate::scene::angle::cos_sin;
@@ -91,21 +91,18 @@ impl ExactLight<'_> {
         let [mirror, other] = sequence.points(i);
         let (material, to_eye) = (hit.material, ground.to_eye);
         let alpha = reflection::alpha(material.roughness);
-        let straight = reflection::straight_reflection(material, hit.spot.albedo);
+        let fresnel = Fresnel::new(material, hit.spot.albedo);
         // Draw what is reflected to the eye.
         let frame = frame_around(ground.normal);
         let local_eye = frame.transpose() * to_eye;
         let (reflected, v_h, shown) = reflection::reflected(f64::from(alpha), local_eye, mirror);
-        let share = |straight: Vec3, cosine: f32| {
-            straight + (Vec3::ONE - straight) * reflection::grazing(cosine)
-        };
         let shown = shown as f32;
         let mut sum = material.emissive;
         if shown > 0.0 {
             let sky = ground.sky(frame * reflected);
-            sum += share(straight, v_h as f32) * shown * sky;
+            sum += fresnel.at(v_h as f32) * shown * sky;
         }
-        let kept = 1.0 - share(Vec3::splat(DIELECTRIC), v_h as f32).x * shown;
+        let kept = 1.0 - Fresnel::of_dielectric(material).at(v_h as f32).x * shown;
         let diffuse = hit.spot.albedo * (kept * (1.0 - material.metallic));
         // One direction of the sky around the normal, as dense as its cosine.
         sum += diffuse * ground.sky(frame * cosine_direction(other));
@@ -120,7 +117,7 @@ impl ExactLight<'_> {
                 [to_eye.dot(ground.normal), half.dot(ground.normal), half.dot(to_eye)]
                     .map(|c| c as f32);
             let lobe = reflection::lobe(alpha * alpha, n_v, n_l, n_h);
-            sum += intensity * (diffuse * n_l + share(straight, v_h) * lobe);
+            sum += intensity * (diffuse * n_l + fresnel.at(v_h) * lobe);
         }
         sum
     }

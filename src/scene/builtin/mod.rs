@@ -34,11 +34,18 @@ pub fn builtin() -> Scene {
         Material {
             name: "street".into(),
             // Worn smooth, and damp.
+            specular: 1.0,
             roughness: 0.45,
             surface: street,
             ..Material::default()
         },
-        Material { name: "arch".into(), roughness: 0.65, surface: arch, ..Material::default() },
+        Material {
+            name: "arch".into(),
+            specular: 1.0,
+            roughness: 0.65,
+            surface: arch,
+            ..Material::default()
+        },
     ];
     Scene {
         meshes: vec![street_mesh(), arch_mesh()],
