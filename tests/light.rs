@@ -2,8 +2,8 @@
 
 mod common;
 
-use basrelief::texture::{ColorImage, Surface, SurfaceMaps};
-use basrelief::{Filter, Frame, Light, Lighting, Scene, Settings, Sky, render};
+use basrelief::texture::{ColorImage, Surface, SurfaceMaps, srgb_from_linear};
+use basrelief::{Filter, Frame, Light, Lighting, Rays, Scene, Settings, Sky, render};
 use common::{cobbles, floor_scene};
 use glam::Vec3;
 
@@ -108,4 +108,20 @@ fn a_floor_seen_from_below_is_lit_from_below() {
     scene.lights = vec![sun(Vec3::new(0.3, -1.0, 0.2), Vec3::ONE)];
     let colors: Vec<_> = seen(&draw(&scene, filter)).flatten().collect();
     assert!(colors.iter().sum::<f32>() > 0.5 * colors.len() as f32);
+}
+
+#[test]
+fn baked_light_is_the_truths() {
+    let lights = [sun(Vec3::new(1.0, 0.6, 0.5), Vec3::splat(0.9))];
+    for (lights, sky) in [(&lights[..], Vec3::ZERO), (&[], Vec3::splat(0.8))] {
+        let scene = floor(cobbles(128, 4), lights, sky);
+        let [baked, truth] = [Filter::default(), Filter::Truth(Rays { samples: 64 })]
+            .map(|filter| draw(&scene, filter));
+        let squares = seen(&baked).zip(seen(&truth)).flat_map(|(a, b)| {
+            [0, 1, 2].map(|c| (srgb_from_linear(a[c]) - srgb_from_linear(b[c])).powi(2))
+        });
+        let (sum, num) = squares.fold((0.0, 0.0), |(sum, num), square| (sum + square, num + 1.0));
+        let decibels = -10.0 * (sum / num as f32).log10();
+        assert!(decibels > 40.0, "{decibels} dB under {} suns", lights.len());
+    }
 }
