@@ -184,6 +184,6 @@ pub use render::{DrawnPixel, Renderer, Stats, render};
 pub use scene::{Camera, Environment, Light, Material, Mesh, Scene, Sky};
 pub use settings::{
     Derivatives, Ewa, Filter, FootprintRule, Formulas, Horizon, Lighting, RECONSTRUCTION, Rays,
-    Region, Settings, Trilinear, Visibility, Visible,
+    Region, Settings, Tone, Trilinear, Visibility, Visible,
 };
 pub use simd::LEVEL as SIMD_LEVEL;
