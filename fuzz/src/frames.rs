@@ -57,6 +57,8 @@ pub fn render(bytes: &[u8]) {
             ..Settings::default()
         };
         if options & 0x40 != 0 {
+            // Four frames of the truth: smaller ones.
+            let settings = Settings { width: 12, height: 8, ..settings.clone() };
             hold(no_more_than_the_sky(scene.clone(), &settings, 2));
             let sun = Light::sun(vector(eye) + Vec3::Y, Vec3::ONE);
             let sky = Sky::Gradient { top: Vec3::ONE, horizon: Vec3::X, ground: Vec3::ZERO };
