@@ -3,11 +3,13 @@
 mod common;
 
 use basrelief::invariants::{lights_add, no_more_than_the_sky};
+use basrelief::relief::{Climb, HeightField, march};
+use basrelief::simd::PixelLanes;
 use basrelief::texture::{HeightImage, Surface, SurfaceMaps, Wrap};
 use basrelief::{
     Camera, Filter, Frame, Light, Lighting, Material, Mesh, Rays, Renderer, Scene, Settings, Sky,
 };
-use common::{cobbles, flat_surface, floor_scene, rough_surface};
+use common::{Random, cobbles, flat_surface, floor_scene, rough_surface};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -221,4 +223,35 @@ fn more_samples_are_nearer_to_the_truth() {
         pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f32>().sqrt()
     };
     assert!(error(&more) * 2.0 < error(&few), "{} {}", error(&more), error(&few));
+}
+
+/// Light reaches a place of the relief exactly if it is the first that a ray from the light meets.
+#[test]
+fn climbing_rays_and_marching_rays_agree() {
+    let mut random = Random(7);
+    let (mut nums, mut num_different) = ([0; 2], 0);
+    for wrap in [Wrap::Repeat, Wrap::Clamp] {
+        let field = HeightField::new(&rough_surface(24, 16, wrap, 11));
+        let depth = field.relief_depth;
+        for _ in 0..4000 {
+            let place = [0; 2].map(|_| random.within(0.1, 0.9));
+            let slope = [0; 2].map(|_| random.within(-1.0, 1.0));
+            let direction = [f64::from(slope[0]), f64::from(slope[1]), 0.5];
+            let climb = Climb::new(&field, place, direction).expect("it goes up");
+            // From the light it comes down the other way.
+            let displacement = slope.map(|s| -s * 2.0 * depth);
+            let down = climb.depth() as f32;
+            let base = [0, 1].map(|i| place[i] - displacement[i] * down);
+            let [base, displacement] = [base, displacement].map(|pair| pair.map(PixelLanes::splat));
+            let found = march(&field, &base, &displacement).to_array()[0];
+            let is_free = climb.is_free(&field, f64::INFINITY);
+            // What hides a place may begin right there: the ray starts inwards.
+            let is_first = (found - down).abs() < 1e-3 && (is_free || climb.is_free(&field, 5e-3));
+            num_different += u32::from(is_first != is_free);
+            nums[usize::from(is_free)] += 1;
+        }
+    }
+    assert!(nums.iter().all(|num| *num > 400), "{nums:?}");
+    // Rays that only touch the relief may hit it in an f32 or not: two of 8000 do.
+    assert!(num_different < 5, "{num_different}");
 }
