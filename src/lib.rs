@@ -185,6 +185,6 @@ pub use render::{DrawnPixel, Renderer, Stats, render};
 pub use scene::{Camera, Environment, Light, Material, Mesh, Scene, Sky};
 pub use settings::{
     Derivatives, Ewa, Filter, Formulas, Horizon, Lighting, OptionsMut, RECONSTRUCTION, Rays,
-    Region, Settings, Trilinear, Visibility, Visible,
+    Region, Settings, Tone, Trilinear, Visibility, Visible,
 };
 pub use simd::LEVEL as SIMD_LEVEL;

@@ -3,7 +3,8 @@
 use basrelief::texture::{ColorImage, HeightImage, NormalImage, Surface, SurfaceMaps, Wrap};
 use basrelief::{
     Camera, Derivatives, Error, Ewa, Filter, Formulas, Frame, Horizon, Light, Lighting, Material,
-    Mesh, Rays, Region, Renderer, Scene, Settings, Sky, Trilinear, Visibility, Visible, metrics,
+    Mesh, Rays, Region, Renderer, Scene, Settings, Sky, Tone, Trilinear, Visibility, Visible,
+    metrics,
 };
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
@@ -117,13 +118,15 @@ fn settings() -> impl Strategy<Value = Settings> {
         pick(&[1, 1, 4, 8, 0, 2, u32::MAX]),
         pick(&[8, 16, 32, 64, 256, 32, 8, 0, 7, 512, u32::MAX]),
     );
-    let modes = (filter(), pick(&[Lighting::Unlit, Lighting::Lit]), any::<[bool; 2]>());
+    let exposure = prop_oneof![8 => -4.0..4.0_f32, 1 => number()];
+    let light = (pick(&[Lighting::Unlit, Lighting::Lit]), exposure);
+    let modes = (filter(), light, any::<[bool; 3]>());
     (side(), side(), region, modes, grids).prop_map(
         |(
             width,
             height,
             region,
-            (filter, lighting, [parallax, cull_back_faces]),
+            (filter, (lighting, exposure), [parallax, cull_back_faces, has_tone]),
             (msaa, tile_size),
         )| Settings {
             width,
@@ -132,6 +135,8 @@ fn settings() -> impl Strategy<Value = Settings> {
             filter,
             parallax,
             lighting,
+            exposure,
+            tone: if has_tone { Tone::Neutral } else { Tone::None },
             cull_back_faces,
             msaa,
             tile_size,

@@ -3,8 +3,8 @@
 use crate::input::{Input, Number, floor};
 use crate::{check, hold};
 use arbitrary::Arbitrary;
-use basrelief::invariants::{fan_is_hit_once, frame_is_finite};
-use basrelief::{Camera, Filter, Light, Lighting, Material, Mesh, Rays, Scene, Settings};
+use basrelief::invariants::{fan_is_hit_once, frame_is_finite, lights_add, no_more_than_the_sky};
+use basrelief::{Camera, Filter, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky};
 use basrelief_cli::{Cli, Ending};
 use glam::{Vec2, Vec3};
 use std::ffi::OsString;
@@ -25,7 +25,7 @@ pub fn coverage(bytes: &[u8]) {
 }
 
 /// Small scenes of any triangles, camera and settings: refused with a reason, or drawn with finite
-/// colours.
+/// colours; the truth's lights add up, and none sends out more than it gets.
 pub fn render(bytes: &[u8]) {
     type Corner = ([Number; 3], [Number; 2]);
     type Drawn = (Input, Vec<Corner>, [[Number; 3]; 2], u8);
@@ -48,17 +48,24 @@ pub fn render(bytes: &[u8]) {
         let rays = Rays { samples: 2 };
         let [parallax, truth] = [Filter::Parallax(rays), Filter::Truth(rays)];
         let filters = [texture.filter(), parallax, truth, Filter::Horizon(texture.horizon())];
-        hold(frame_is_finite(
-            scene,
-            Settings {
-                width: 24,
-                height: 16,
-                filter: filters[usize::from(options >> 4 & 3)],
-                lighting: if options & 1 == 0 { Lighting::Unlit } else { Lighting::Lit },
-                msaa: [1, 4, 8, 4][usize::from(options >> 1 & 3)],
-                ..Settings::default()
-            },
-        ));
+        let settings = Settings {
+            width: 24,
+            height: 16,
+            filter: filters[usize::from(options >> 4 & 3)],
+            lighting: if options & 1 == 0 { Lighting::Unlit } else { Lighting::Lit },
+            msaa: [1, 4, 8, 4][usize::from(options >> 1 & 3)],
+            ..Settings::default()
+        };
+        if options & 0x40 != 0 {
+            // Four frames of the truth: smaller ones.
+            let settings = Settings { width: 12, height: 8, ..settings.clone() };
+            hold(no_more_than_the_sky(scene.clone(), &settings, 2));
+            let sun = Light::sun(vector(eye) + Vec3::Y, Vec3::ONE);
+            let sky = Sky::Gradient { top: Vec3::ONE, horizon: Vec3::X, ground: Vec3::ZERO };
+            let lights = [&scene.lights[..], &[sun]].concat();
+            hold(lights_add(Scene { lights, sky, ..scene.clone() }, &settings, 2));
+        }
+        hold(frame_is_finite(scene, settings));
     });
 }
 

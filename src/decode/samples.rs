@@ -6,6 +6,7 @@
 //! is the bottom, so rows are turned over.
 
 use crate::texture::{ColorImage, HeightImage, NormalImage, linear_from_srgb};
+use glam::Vec3;
 use image::DynamicImage;
 use rayon::prelude::*;
 
@@ -140,6 +141,19 @@ impl Samples {
             rgb,
         );
         (texels, scale)
+    }
+
+    /// Linear light, top row first, in as many digits as the file has.
+    pub(crate) fn light(&self) -> Vec<Vec3> {
+        let is_float = matches!(self.values, Values::Float(_));
+        let linear = |c: f32| if is_float { c.clamp(0.0, 1e6) } else { linear_from_srgb(c) };
+        let mut texels = self.map(|c| match *c {
+            [r, g, b, ..] => [r, g, b].map(linear),
+            _ => [linear(c[0]); 3],
+        });
+        texels.chunks_exact_mut(self.width).for_each(<[_]>::reverse);
+        texels.reverse();
+        texels.into_iter().map(Vec3::from).collect()
     }
 
     /// Heights `base + gain * h`, kept within 0 to 1, of one channel.

@@ -3,12 +3,15 @@
 //! A file is encoded in memory, written under a temporary name in its own folder, flushed to the
 //! disk and renamed: whoever looks finds the whole old file or the whole new one ([`write_whole`]).
 
+mod develop;
 mod encode;
 mod format;
 mod pixel;
 mod png;
 mod save;
+mod tone;
 
+pub(crate) use self::develop::Development;
 pub use self::png::{Part, PngHead, write_png};
 pub use format::Format;
 pub use pixel::Pixel;

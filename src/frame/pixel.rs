@@ -6,6 +6,9 @@ use crate::texture::{linear_from_srgb8, srgb8_from_linear, srgb8_of_four};
 /// component, the opacity; `[u8; 4]` is 8-bit sRGB with straight opacity, in a quarter of the
 /// memory.
 pub trait Pixel: Copy + Default + Send + Sync + private::Sealed {
+    /// Whether pixels are those of a picture, to look at; else they are light.
+    const IS_PICTURE: bool;
+
     /// Sets a row from pixels in linear light, premultiplied by their opacity.
     fn set_row(row: &mut [Self], linear: &[[f32; 4]]);
 
@@ -23,6 +26,8 @@ mod private {
 }
 
 impl Pixel for [f32; 4] {
+    const IS_PICTURE: bool = false;
+
     #[inline]
     fn set_row(row: &mut [Self], linear: &[[f32; 4]]) {
         row.copy_from_slice(linear);
@@ -38,6 +43,8 @@ impl Pixel for [f32; 4] {
 }
 
 impl Pixel for [u8; 4] {
+    const IS_PICTURE: bool = true;
+
     fn set_row(row: &mut [Self], linear: &[[f32; 4]]) {
         let ((fours, last), (from, last_from)) =
             (row.as_chunks_mut::<4>(), linear.as_chunks::<4>());

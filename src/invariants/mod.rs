@@ -27,6 +27,7 @@
 
 mod check;
 mod frames;
+mod light;
 mod means;
 mod pixel;
 mod sets;
@@ -36,6 +37,7 @@ mod weights;
 pub use crate::footprint::Footprint;
 pub use check::Checked;
 pub use frames::{fan_is_hit_once, frame_is_finite, march_finds_first_hit};
+pub use light::{lights_add, no_more_than_the_sky};
 pub use means::{flat_relief_hides_nothing, linear_in_texture, same_for_same_ellipse};
 pub use pixel::{
     anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels, work_is_bounded,

@@ -6,6 +6,7 @@
 //! error.
 
 mod assemble;
+mod environment;
 mod files;
 mod lines;
 mod memory;
@@ -19,6 +20,7 @@ mod stage;
 mod surfaces;
 
 pub use assemble::{Loaded, load, load_reporting};
+pub use environment::environment;
 #[doc(hidden)]
 pub use memory::{load_image_bytes, load_mtl_bytes, load_obj_bytes};
 pub use options::{HeightSense, LoadOptions, MaterialOptions, NormalY};

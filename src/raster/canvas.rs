@@ -1,7 +1,7 @@
 //! The pixels of one tile while their colours are added up.
 
 use super::gather::SeenQuad;
-use crate::frame::Pixel;
+use crate::frame::{Development, Pixel};
 use crate::simd::{PixelLanes, quads_by_pixel};
 
 /// Pixels in linear light, row by row: RGB, premultiplied by the fourth component, the opacity.
@@ -75,6 +75,13 @@ impl Canvas {
             if left > 0.0 {
                 (0..4).for_each(|i| pixel[i] += background[i] * left);
             }
+        }
+    }
+
+    /// Brings light to the range of the frame.
+    pub(super) fn develop(&mut self, development: &Development) {
+        if !development.is_none() {
+            self.pixels.iter_mut().for_each(|pixel| *pixel = development.apply(*pixel));
         }
     }
 

@@ -14,7 +14,7 @@ use super::pool::Pool;
 use super::quad::{AttributePlanes, QuadPair};
 use super::scratch::Scratch;
 use super::tile::NONE;
-use crate::frame::{Frame, Pixel};
+use crate::frame::{Development, Frame, Pixel};
 use crate::geometry::{Geometry, ScreenTriangle};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -170,13 +170,14 @@ impl Painter<'_> {
         scratch: &mut Scratch,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
     ) -> RasterStats {
+        let development = Development::of(self.settings, P::IS_PICTURE);
         let rect = self.grid.rect(tile);
         scratch.list.clear();
         self.bins.list(tile, &mut scratch.list);
         if scratch.list.is_empty() {
             // A tile without triangles is encoded once and copied; no buffer is touched.
             let mut background = [P::default()];
-            P::set_row(&mut background, &[self.background()]);
+            P::set_row(&mut background, &[development.apply(self.background())]);
             rows.iter_mut().for_each(|row| row.fill(background[0]));
             return RasterStats::default();
         }
@@ -197,6 +198,7 @@ impl Painter<'_> {
         if !is_full {
             scratch.canvas.add_background(self.background());
         }
+        scratch.canvas.develop(&development);
         scratch.canvas.copy_to(rows);
         RasterStats {
             pixels_shaded,

@@ -21,6 +21,15 @@ pub enum Lighting {
     Lit,
 }
 
+/// How light is brought within the range of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Tone {
+    /// What is brighter than 1 is cut.
+    None,
+    /// Khronos PBR Neutral: base colours keep their hue and saturation, highlights are compressed.
+    Neutral,
+}
+
 /// A rectangle of a frame's pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Region {
@@ -63,6 +72,11 @@ pub struct Settings {
     pub parallax: bool,
     /// Whether lights are evaluated. Default: [`Lighting::Unlit`].
     pub lighting: Lighting,
+    /// How many times the picture's light, the background's too, is doubled: -32 to 32. Default: 0.
+    pub exposure: f32,
+    /// How it is then brought within 0 to 1 where pixels are bytes; frames of linear light stay as
+    /// they are ([`Frame::apply_tone`](crate::Frame::apply_tone)). Default: [`Tone::None`].
+    pub tone: Tone,
     /// Whether triangles seen from behind (clockwise on the screen) are left out. Default: `false`.
     pub cull_back_faces: bool,
     /// Coverage and depth samples a pixel: 1, 4 or 8. Shading stays once per pixel and triangle.
@@ -85,6 +99,8 @@ impl Default for Settings {
             filter: Filter::default(),
             parallax: true,
             lighting: Lighting::Unlit,
+            exposure: 0.0,
+            tone: Tone::None,
             cull_back_faces: false,
             msaa: 4,
             tile_size: 32,
@@ -122,6 +138,7 @@ impl Settings {
                 format!("{width} x {height} is more than {MAX_PIXELS} pixels"),
             ));
         }
+        within("exposure", self.exposure, -32.0, 32.0)?;
         if !matches!(self.msaa, 1 | 4 | 8) {
             return Err(Error::setting("msaa", format!("{} is not 1, 4 or 8", self.msaa)));
         }

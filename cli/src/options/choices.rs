@@ -2,7 +2,7 @@
 
 use basrelief::load::{HeightSense, NormalY};
 use basrelief::texture::Wrap;
-use basrelief::{Derivatives, Filter, Formulas, Lighting, Visibility};
+use basrelief::{Derivatives, Filter, Formulas, Lighting, Tone, Visibility};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use serde::de::Error;
@@ -62,6 +62,11 @@ pub(crate) const LIGHTING: &[Choice<Lighting>] = &[
     ("lit", Lighting::Lit, "Sky, diffuse light and highlights"),
 ];
 
+pub(crate) const TONES: &[Choice<Tone>] = &[
+    ("none", Tone::None, "What is brighter than white is cut"),
+    ("neutral", Tone::Neutral, "Khronos PBR Neutral: highlights are compressed"),
+];
+
 pub(crate) const MSAA: &[Choice<u32>] =
     &[("1", 1, "Edges as stairs"), ("4", 4, "Smooth edges"), ("8", 8, "Smoother edges")];
 
@@ -112,6 +117,7 @@ words! {
     Derivatives: DERIVATIVES;
     Formulas: FORMULAS;
     Lighting: LIGHTING;
+    Tone: TONES;
     HeightSense: HEIGHT_SENSES;
     NormalY: NORMAL_YS;
     Wrap: WRAPS;

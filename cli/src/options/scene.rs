@@ -151,6 +151,13 @@ pub(crate) struct LightOptions {
     /// goes up (+y) [default: the scene's own, 0.15 for an OBJ file]
     #[arg(long, value_name = "COLOUR|TOP/HORIZON/GROUND", value_parser = Spelt::<[Vec3; 3]>::parse, allow_hyphen_values = true)]
     sky: Option<Spelt<[Vec3; 3]>>,
+    /// Light from everywhere: a picture of all directions, HDR or EXR, in place of --sky
+    #[arg(long, value_name = "FILE", conflicts_with = "sky")]
+    pub(crate) environment: Option<PathBuf>,
+    /// How far that picture is turned to the left, about +y [default: 0]
+    #[arg(long, value_name = "DEG", value_parser = values::turn, allow_hyphen_values = true, requires = "environment")]
+    #[serde(deserialize_with = "file_values::turn")]
+    environment_turn: Option<f32>,
     /// Colour where nothing is hit, sRGB: transparent, #rrggbb, R,G,B of 0 to 255 or a name such as
     /// skyblue [default: the scene's own, transparent for an OBJ file]
     #[arg(long, value_name = "COLOUR", value_parser = Spelt::<[f32; 4]>::parse, allow_hyphen_values = true)]
@@ -171,7 +178,10 @@ impl SceneOptions {
     /// Whether a light is given.
     pub(crate) fn has_lights(&self) -> bool {
         let light = &self.light;
-        !light.sun.is_empty() || !light.point_light.is_empty() || light.sky.is_some()
+        !light.sun.is_empty()
+            || !light.point_light.is_empty()
+            || light.sky.is_some()
+            || light.environment.is_some()
     }
 
     /// Reads or makes the scene and sets what the options say.
@@ -190,6 +200,12 @@ impl SceneOptions {
             None => built_in(),
         };
         self.set(&mut loaded.scene);
+        // Nothing asks for it without lighting, and it may be large.
+        if let Some(path) = self.light.environment.as_ref().filter(|_| is_lit) {
+            let turn = self.light.environment_turn.unwrap_or_default();
+            let picture = load::environment(path, turn, &self.load_options(settings, is_lit))?;
+            loaded.scene.sky = Sky::Environment(picture);
+        }
         Ok(loaded)
     }
 

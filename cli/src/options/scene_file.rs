@@ -13,7 +13,7 @@
 //! background = "skyblue"
 //! [[light.sun]]
 //! direction = [1.0, 2.0, 1.0]
-//! [frame]                         # --size, --region, --msaa, --cull, --tile, --lighting
+//! [frame]                         # --size, --region, --msaa, --cull, --tile, --lighting, --exposure, --tone
 //! size = "1920x1080"
 //! [filter]                        # --filter and its options
 //! lines = 16
@@ -166,7 +166,7 @@ impl SceneFile {
     fn each_path(&mut self, mut change: impl FnMut(&mut PathBuf)) {
         let maps = self.material.values_mut().chain([&mut self.all_materials]);
         let maps = maps.flat_map(|maps| [&mut maps.albedo, &mut maps.height, &mut maps.normal]);
-        maps.chain([&mut self.model]).flatten().for_each(&mut change);
+        maps.chain([&mut self.model, &mut self.light.environment]).flatten().for_each(&mut change);
     }
 }
 

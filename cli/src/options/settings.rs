@@ -5,8 +5,9 @@
 use crate::options::choices::{self, ON_OFF, one_of};
 use crate::options::file_values::Spelt;
 use crate::options::filter::FilterOptions;
+use crate::options::values;
 use crate::refusal::Refusal;
-use basrelief::{Filter, Lighting, Region, Settings};
+use basrelief::{Filter, Lighting, Region, Settings, Tone};
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +41,13 @@ pub(crate) struct FrameOptions {
     /// stays the same [default: 32]
     #[arg(long, value_name = "N")]
     tile: Option<u32>,
+    /// How many times the light of the picture is doubled, -32 to 32 [default: 0]
+    #[arg(long, value_name = "EV", value_parser = values::number, allow_hyphen_values = true)]
+    exposure: Option<f32>,
+    /// How light is brought within the range of a picture; EXR stays as it is [default: none]
+    #[arg(long, value_name = "HOW", value_parser = one_of(choices::TONES))]
+    #[serde(with = "choices")]
+    tone: Option<Tone>,
     /// Whether lights are evaluated [default: unlit, or lit where a light is given]
     #[arg(long, value_name = "HOW", value_parser = one_of(choices::LIGHTING))]
     #[serde(with = "choices")]
@@ -87,6 +95,8 @@ impl SettingsOptions {
             } else {
                 Lighting::Unlit
             }),
+            exposure: frame.exposure.unwrap_or(default.exposure),
+            tone: frame.tone.unwrap_or(default.tone),
             cull_back_faces: frame.cull.unwrap_or(default.cull_back_faces),
             msaa: frame.msaa.unwrap_or(default.msaa),
             tile_size: frame.tile.unwrap_or(default.tile_size),
@@ -103,6 +113,8 @@ impl From<&Settings> for SettingsOptions {
             size: Spelt::parse(&size).ok(),
             region: region.and_then(|region| Spelt::parse(&region).ok()),
             msaa: Some(settings.msaa),
+            exposure: Some(settings.exposure),
+            tone: Some(settings.tone),
             cull: Some(settings.cull_back_faces),
             tile: Some(settings.tile_size),
             lighting: Some(settings.lighting),
@@ -152,7 +164,7 @@ mod tests {
                 line.push(format!("--{}={default}", arg.get_long().unwrap()));
             }
         }
-        assert_eq!(line.len(), 18, "{line:?}");
+        assert_eq!(line.len(), 20, "{line:?}");
         let options = options(&line.join(" ")).unwrap();
         assert_eq!(options.settings(false).unwrap(), Settings::default());
         assert_eq!(Filter::ALL.map(|filter| options.filter.apply(filter)), Filter::ALL);
@@ -182,7 +194,7 @@ mod tests {
 
     #[test]
     fn each_option_sets_its_field() {
-        let line = "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --lighting lit --parallax off --filter ewa";
+        let line = "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --exposure -1.5 --tone neutral --lighting lit --parallax off --filter ewa";
         let options = options(&format!("{line} {OF_FILTERS}")).unwrap();
         let (derivatives, formulas) = (Derivatives::Flat, Formulas::Printed);
         let (texel_budget, max_anisotropy) = (0, 8.0);
@@ -229,6 +241,8 @@ mod tests {
             lighting: Lighting::Lit,
             cull_back_faces: true,
             msaa: 8,
+            exposure: -1.5,
+            tone: Tone::Neutral,
             tile_size: 16,
         };
         assert_eq!(options.settings(false).unwrap(), expected);

@@ -61,6 +61,11 @@ pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
     check::field_of_view(number(text)?)
 }
 
+/// A number of degrees from -360 to 360.
+pub(crate) fn turn(text: &str) -> Result<f32, String> {
+    check::turn(number(text)?)
+}
+
 /// A number of degrees from 0 to 180.
 pub(crate) fn crease_angle(text: &str) -> Result<f32, String> {
     check::crease_angle(number(text)?)
@@ -186,6 +191,14 @@ pub(crate) mod check {
 
     pub(crate) fn unit(value: f32) -> Result<f32, String> {
         if (0.0..=1.0).contains(&value) { Ok(value) } else { Err("must be within 0 to 1".into()) }
+    }
+
+    pub(crate) fn turn(value: f32) -> Result<f32, String> {
+        if (-360.0..=360.0).contains(&value) {
+            Ok(value)
+        } else {
+            Err("must be within -360 to 360 degrees".into())
+        }
     }
 
     pub(crate) fn sun_size(value: f32) -> Result<f32, String> {

@@ -77,11 +77,18 @@ pub(crate) fn draw(
 ) -> Result<Vec<Took>, Refusal> {
     let (took, bytes) = match way {
         Way::Bands => return Ok(vec![draw_bands(renderer, settings, path, progress)?]),
-        // Linear light is asked for, or the frame over black.
-        Way::Whole(format @ (Format::Exr | Format::Jpeg)) => {
-            draw_whole::<[f32; 4]>(renderer, settings, format, repeat, progress)?
+        // Linear light is asked for.
+        Way::Whole(format @ Format::Exr) => {
+            draw_whole::<[f32; 4]>(renderer, settings, (format, |_| ()), repeat, progress)?
         }
-        Way::Whole(format) => draw_whole::<[u8; 4]>(renderer, settings, format, repeat, progress)?,
+        // The frame over black.
+        Way::Whole(format @ Format::Jpeg) => {
+            let tone = |frame: &mut Frame| frame.apply_tone(settings.tone);
+            draw_whole(renderer, settings, (format, tone), repeat, progress)?
+        }
+        Way::Whole(format) => {
+            draw_whole::<[u8; 4]>(renderer, settings, (format, |_| ()), repeat, progress)?
+        }
     };
     output::write(path, &bytes).map(|()| took)
 }
@@ -89,7 +96,7 @@ pub(crate) fn draw(
 fn draw_whole<P: DrawnPixel>(
     renderer: &mut Renderer,
     settings: &Settings,
-    format: Format,
+    (format, finish): (Format, impl Fn(&mut Frame<P>)),
     repeat: Option<u32>,
     progress: &Progress,
 ) -> Result<(Vec<Took>, Vec<u8>), Refusal> {
@@ -102,6 +109,7 @@ fn draw_whole<P: DrawnPixel>(
             took.push(draw_timed(renderer, &mut frame));
         }
     }
+    finish(&mut frame);
     let bytes = frame.encode_part(format, part(settings))?;
     Ok((took, bytes))
 }

@@ -56,10 +56,7 @@ fn bad_options_are_refused() {
         ("--size 32769x1", "--size"),
         ("--size 8x8 --region 0,0,9,1", "--region"),
         ("--region 1,2,3", "--region"),
-        ("--diffuse -1", "--diffuse"),
-        ("--roughness 1.5", "--roughness"),
-        ("--metallic -1", "--metallic"),
-        ("--emissive -1", "--emissive"),
+        ("--base-color -1", "--base-color"),
         ("--size 64", "--size"),
         ("--size -64x36", "--size"),
         ("--size 99999999999x1", "--size"),
@@ -85,11 +82,6 @@ fn bad_options_are_refused() {
         ("--fov 180", "--fov"),
         ("--fov nan", "--fov"),
         ("--near -1", "--near"),
-        ("--sun 0,0,0", "--sun"),
-        ("--point-light 1,2,3,nan,0,0", "--point-light"),
-        ("--sky -1", "--sky"),
-        ("--sky 1/2", "--sky"),
-        ("--sun 1,1,1,1,1,1,91", "--sun"),
         ("--relief-depth 2", "--relief-depth"),
         ("--max-image-side 0", "--max-image-side"),
         ("--max-triangles 1", "--max-triangles"),
@@ -102,6 +94,31 @@ fn bad_options_are_refused() {
     }
     folder.refuses("--height a.png -o a.png", &["SCENE"]);
     folder.refuses("compare", &["<A>"]);
+}
+
+#[test]
+fn bad_options_of_light_are_refused() {
+    let folder = Folder::new();
+    for (line, word) in [
+        ("--roughness 1.5", "--roughness"),
+        ("--metallic -1", "--metallic"),
+        ("--emissive -1", "--emissive"),
+        ("--sun 0,0,0", "--sun"),
+        ("--point-light 1,2,3,nan,0,0", "--point-light"),
+        ("--sky -1", "--sky"),
+        ("--sky 1/2", "--sky"),
+        ("--sun 1,1,1,1,1,1,91", "--sun"),
+        ("--environment missing.hdr --lighting lit", "missing.hdr"),
+        ("--environment quad.obj", "quad.obj"),
+        ("--environment a.hdr --sky 1", "--sky"),
+        ("--environment a.hdr --environment-turn 400", "--environment-turn"),
+        ("--environment-turn 40", "--environment"),
+        ("--exposure 33", "--exposure"),
+        ("--exposure nan", "--exposure"),
+        ("--tone filmic", "--tone"),
+    ] {
+        folder.refuses(&format!("quad.obj -o a.png {line}"), &[word]);
+    }
 }
 
 #[test]
@@ -209,6 +226,44 @@ fn background_is_written_as_given() {
 }
 
 #[test]
+fn exposure_and_tone_make_the_picture_and_tone_leaves_light_as_it_is() {
+    let folder = Folder::new();
+    let draw = |options: &str| {
+        let line = "quad.obj -q -s 4x4 --eye 0,0,1 --target 0,0,0 --background 80,80,80 -o";
+        folder.succeeds(&format!("{line} {options}"));
+        image::open(folder.path(options.split(' ').next().unwrap())).unwrap().to_rgb32f()
+    };
+    let light = |options: &str| draw(options).get_pixel(1, 1).0[0];
+    let plain = light("a.exr");
+    assert_eq!(light("b.exr --exposure 2 --tone neutral"), plain * 4.0);
+    // White as it is, and by a tone that keeps 1 for light of no end.
+    let white = [light("a.png"), light("a.jpg")];
+    let toned = [light("b.png --tone neutral"), light("b.jpg --tone neutral")];
+    assert!(white[0] > 0.99 && white[1] > 0.98);
+    assert!(toned[0] < 0.98 && (toned[0] - toned[1]).abs() < 0.02, "{toned:?}");
+}
+
+#[test]
+fn an_environment_lights_as_a_sky_of_its_colour_does() {
+    let folder = Folder::new();
+    folder.put_image("sky.exr", [0.25, 0.5, 0.75, 1.0]);
+    fs::create_dir(folder.path("scene")).unwrap();
+    folder.put_image("scene/sky.exr", [0.25, 0.5, 0.75, 1.0]);
+    folder.put("scene/s.toml", "model = '../quad.obj'\n[light]\nenvironment = 'sky.exr'");
+    let draw = |options: &str| {
+        folder.succeeds(&format!("{options} -q -s 8x8 --lighting lit -o a.png"));
+        image::open(folder.path("a.png")).unwrap().to_rgb8()
+    };
+    let expected = draw("quad.obj --sky 0.25,0.5,0.75");
+    let found =
+        [draw("quad.obj --environment sky.exr --environment-turn 90"), draw("scene/s.toml")];
+    for found in found {
+        let pixels = found.iter().zip(expected.iter());
+        assert!(pixels.clone().all(|(a, b)| a.abs_diff(*b) <= 1));
+    }
+}
+
+#[test]
 fn every_option_is_accepted() {
     let folder = Folder::new();
     folder.put_image("map.png", [0.5, 0.5, 0.5, 1.0]);
@@ -218,7 +273,7 @@ fn every_option_is_accepted() {
          --msaa 1 --tile 8 --albedo map.png --height map.png --normal map.png --height-sense white-deep --relief-depth 0.1 \
          --normal-y down --wrap mirror --allow-outside --base-color 0.5 --metallic 0.5 --roughness 0.3 --emissive 0.1,0.2,0.3 --region 0,1,7,6 \
          --max-image-side 64 --max-image-mib 64 --max-triangles 9 --max-textures 9 --crease-angle 30 --eye -1,-1,3 --target -0.1,0,0 --up 0,1,-0.1 --fov 40 --near 0.1 \
-         --sun -1,1,1 --sun 1,1,1,0.5,0.5,0.5,2 --point-light -1,0,2 --sky 0.1,0.1,0.2 --background skyblue --threads 1 \
+         --sun -1,1,1 --sun 1,1,1,0.5,0.5,0.5,2 --point-light -1,0,2 --environment map.png --environment-turn -30 --exposure 0.5 --tone neutral --background skyblue --threads 1 \
          --quiet --repeat 2 --stats stats.json --save-scene kept.toml --json",
     );
 }

@@ -37,7 +37,7 @@ fn saved_scene_draws_the_same_picture() {
         "-q --size 40x30 --eye 3,2,4 --fov 33.3 --near 0.1 --filter ewa --lighting lit --background skyblue --msaa 4",
         "model/two.obj -q --size 40x30 --albedo model/map.png --height model/map.png --relief-depth 0.07 --wrap mirror",
         "model/two.obj -q --size 40x30 --sun -1,2,3 --sun 1,0,0.5,0.1,0.2,0.3 --point-light 0,0,1 --crease-angle 20.5 --roughness 0.5",
-        "model/two.obj -q --size 40x30 --diffuse 0.1,0.9,0.3 --region 3,5,20,11 --cull --eye 0,4,0.001 --samples 3 -f truth",
+        "model/two.obj -q --size 40x30 --base-color 0.1,0.9,0.3 --region 3,5,20,11 --cull --eye 0,4,0.001 --samples 3 -f truth",
     ]
     .iter()
     .enumerate()
@@ -128,14 +128,14 @@ fn single_materials_can_be_different() {
     };
     let [left, right] = draw("");
     assert_ne!(left, right);
-    let changed = draw("[material.right]\ndiffuse = [0.2, 0.4, 0.6]");
+    let changed = draw("[material.right]\nbase-color = [0.2, 0.4, 0.6]");
     assert_eq!(changed, [left, left]);
     // What is said of one goes before what is said of all.
     let changed = draw(
-        "[all-materials]\ndiffuse = [0.6, 0.4, 0.2]\n[material.left]\ndiffuse = [0.2, 0.4, 0.6]",
+        "[all-materials]\nbase-color = [0.6, 0.4, 0.2]\n[material.left]\nbase-color = [0.2, 0.4, 0.6]",
     );
     assert_eq!(changed, [left, right]);
-    let changed = draw("[material.left]\nalbedo = 'map.png'\ndiffuse = [1, 1, 1]");
+    let changed = draw("[material.left]\nalbedo = 'map.png'\nbase-color = [1, 1, 1]");
     assert!(changed[0] != left && changed[1] == right, "{changed:?}");
 }
 

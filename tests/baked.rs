@@ -1,0 +1,127 @@
+//! What holds of lit frames whose light is baked: flat meshes under suns and a sky.
+
+mod common;
+
+use basrelief::texture::{ColorImage, Surface, SurfaceMaps, srgb_from_linear};
+use basrelief::{Filter, Frame, Light, Lighting, Rays, Scene, Settings, Sky, render};
+use common::{cobbles, floor_scene};
+use glam::Vec3;
+
+fn lit(filter: Filter) -> Settings {
+    Settings {
+        width: 64,
+        height: 48,
+        msaa: 1,
+        filter,
+        lighting: Lighting::Lit,
+        ..Settings::default()
+    }
+}
+
+fn floor(maps: SurfaceMaps, lights: &[Light], sky: Vec3) -> Scene {
+    let scene = floor_scene(Surface::new(maps).expect("valid maps"), 0.5);
+    Scene { lights: lights.to_vec(), sky: Sky::Color(sky), ..scene }
+}
+
+fn white() -> SurfaceMaps {
+    SurfaceMaps { albedo: Some(ColorImage::from_fn(64, 64, |_, _| [1.0; 3])), ..cobbles(64, 4) }
+}
+
+fn draw(scene: &Scene, filter: Filter) -> Frame {
+    render(scene.clone(), lit(filter)).expect("a valid scene")
+}
+
+/// Filters that draw lit surfaces as they draw others; the truth lights its samples.
+fn baked_filters() -> impl Iterator<Item = Filter> {
+    Filter::ALL.into_iter().filter(|filter| !matches!(filter, Filter::Truth(_)))
+}
+
+/// The colours of the pixels that show the floor.
+fn seen(frame: &Frame) -> impl Iterator<Item = [f32; 3]> {
+    frame.pixels.iter().filter(|pixel| pixel[3] == 1.0).map(|[r, g, b, _]| [*r, *g, *b])
+}
+
+fn sun(to_light: Vec3, intensity: Vec3) -> Light {
+    Light::sun(to_light, intensity)
+}
+
+#[test]
+fn without_relief_it_is_lambert_in_closed_form() {
+    let to_light = Vec3::new(1.0, 2.0, 0.5);
+    let (intensity, sky) = (Vec3::new(0.9, 0.6, 0.3), Vec3::new(0.05, 0.1, 0.2));
+    let maps = SurfaceMaps { height: None, ..white() };
+    let scene = floor(maps, &[sun(to_light, intensity)], sky);
+    let expected = intensity * to_light.normalize().y + sky;
+    for filter in baked_filters() {
+        let frame = draw(&scene, filter);
+        assert!(seen(&frame).count() > 1000);
+        for color in seen(&frame) {
+            let error = (Vec3::from(color) - expected).abs().max_element();
+            assert!(error < 1e-3, "{filter:?}: {color:?}, by the formula {expected}");
+        }
+    }
+}
+
+#[test]
+fn in_a_white_furnace_nothing_shines() {
+    // Nothing is brighter than what shines on it. Deep places see less of the sky, but some.
+    let scene = floor(white(), &[], Vec3::ONE);
+    for filter in baked_filters() {
+        let colors: Vec<_> = seen(&draw(&scene, filter)).flatten().collect();
+        let [least, most] =
+            [f32::min, f32::max].map(|of| colors.iter().copied().reduce(of).expect("a floor"));
+        assert!(most < 1.005 && least > 0.05, "{filter:?}: {least} to {most}");
+        let mean = colors.iter().sum::<f32>() / colors.len() as f32;
+        assert!((0.6..0.99).contains(&mean), "{filter:?}: {mean}");
+    }
+}
+
+#[test]
+fn two_lights_add() {
+    let lights = [
+        sun(Vec3::new(1.0, 0.8, 0.5), Vec3::new(0.9, 0.7, 0.5)),
+        sun(Vec3::new(-0.4, 0.3, 1.0), Vec3::new(0.1, 0.3, 0.6)),
+    ];
+    let maps = || cobbles(64, 4);
+    for filter in baked_filters() {
+        let [a, b, both] = [&lights[..1], &lights[1..], &lights]
+            .map(|lights| draw(&floor(maps(), lights, Vec3::ZERO), filter));
+        for ((a, b), both) in seen(&a).zip(seen(&b)).zip(seen(&both)) {
+            for c in 0..3 {
+                assert!((a[c] + b[c] - both[c]).abs() < 2e-3, "{filter:?}: {a:?} {b:?} {both:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_floor_seen_from_below_is_lit_from_below() {
+    let up = sun(Vec3::new(0.3, 1.0, 0.2), Vec3::ONE);
+    let mut scene = floor(white(), &[up], Vec3::ZERO);
+    scene.camera.eye.y = -1.6;
+    scene.camera.target.y = -0.6;
+    let filter = Filter::default();
+    assert!(
+        seen(&draw(&scene, filter)).flatten().all(|c| c < 1e-3),
+        "the sun is on the other side"
+    );
+    scene.lights = vec![sun(Vec3::new(0.3, -1.0, 0.2), Vec3::ONE)];
+    let colors: Vec<_> = seen(&draw(&scene, filter)).flatten().collect();
+    assert!(colors.iter().sum::<f32>() > 0.5 * colors.len() as f32);
+}
+
+#[test]
+fn baked_light_is_the_truths() {
+    let lights = [sun(Vec3::new(1.0, 0.6, 0.5), Vec3::splat(0.9))];
+    for (lights, sky) in [(&lights[..], Vec3::ZERO), (&[], Vec3::splat(0.8))] {
+        let scene = floor(cobbles(128, 4), lights, sky);
+        let [baked, truth] = [Filter::default(), Filter::Truth(Rays { samples: 64 })]
+            .map(|filter| draw(&scene, filter));
+        let squares = seen(&baked).zip(seen(&truth)).flat_map(|(a, b)| {
+            [0, 1, 2].map(|c| (srgb_from_linear(a[c]) - srgb_from_linear(b[c])).powi(2))
+        });
+        let (sum, num) = squares.fold((0.0, 0.0), |(sum, num), square| (sum + square, num + 1.0));
+        let decibels = -10.0 * (sum / num as f32).log10();
+        assert!(decibels > 40.0, "{decibels} dB under {} suns", lights.len());
+    }
+}
