@@ -191,7 +191,8 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
         let of_row =
             |starts: &[usize; SLOTS]| between.halves_at(rows.words(), starts[i] + rows.stride())[1];
         let [near, far] = &steps.starts;
-        if HALVES { (of_row(near) + of_row(far)) * 0.5 } else { of_row(near) }
+        // Every other step is a row: a branch that is foreseen.
+        if HALVES && near[i] != far[i] { (of_row(near) + of_row(far)) * 0.5 } else { of_row(near) }
     }
 
     /// The texels of a step.

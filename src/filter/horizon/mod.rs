@@ -48,8 +48,8 @@ const FINE_BINS: f32 = 256.0;
 
 /// Bins along the shortest ellipse of a patch that serve a picture, for each texel that the
 /// settings ask for across: unlit and lit, where lights are asked for each bin; and the fewest.
-const BINS: [f32; 2] = [0.5, 1.6];
-const LEAST_BINS: f32 = 5.0;
+const BINS: [f32; 2] = [0.375, 1.6];
+const LEAST_BINS: f32 = 4.0;
 
 /// Buffers of the filter, kept between calls.
 #[derive(Clone, Debug, Default)]

@@ -4,7 +4,7 @@
 //! patch cannot hold well are split in two, at last into single pixels. What is planned is then
 //! swept, or only told to who asks for the levels.
 
-use super::grid::{Grid, MOST_LINES, Profile};
+use super::grid::{GROUP, Grid, MOST_LINES, Profile};
 use super::kernel::Totals;
 use super::pixels::PixelOnLines;
 use super::sweep_frame::{SweepFrame, means};
@@ -25,11 +25,11 @@ const _: () = assert!(MOST_PIXELS <= 1 << u8::BITS, "a pick is a byte");
 /// Lines across the widest ellipse of a patch for each texel that the settings ask for, unless that
 /// puts them farther apart than [`WIDEST`]; and the fewest. Fewer lines than texels serve, since a
 /// line's colours are interpolated.
-const LINES: [f32; 2] = [0.65, 5.0];
+const LINES: [f32; 2] = [0.62, 5.0];
 
 /// The same on the base level, where lines come closer until they are a texel apart: nothing finer
 /// is left to pay for. 2.2 dB on the wall at 640x360, 4 on the floor at 1280x720.
-const BASE_LINES: f32 = 1.3;
+const BASE_LINES: f32 = 1.1;
 
 /// Where texels are about as large as pixels, and lines lean by at least so much, they are read half
 /// way between rows, too: a bilinear surface has a kink wherever a line crosses a column, and bends
@@ -42,6 +42,9 @@ const KINK_WIDTH: f32 = 4.0;
 /// Greatest distance between lines in texels: sixteen lines and their neighbours lie within 32
 /// texels, two loads.
 const WIDEST: f32 = 1.99;
+
+/// How much of a group lines may exceed whole groups by before there is one more.
+const SLACK: f32 = 0.2;
 
 /// Most bins of a patch of several pixels: as many as fit the second cache with their 64 lines.
 const MOST_BINS: f32 = 256.0;
@@ -201,6 +204,7 @@ impl<'a> Patches<'a> {
             num_lines
         };
         let spacing = (WIDEST / most_scale).min(extent.half_width * (2.0 / num_lines));
+        let spacing = in_whole_groups(extent.xi[1] - extent.xi[0], spacing, WIDEST / most_scale);
         Some(Plan { level, frame, extent, most_scale, spacing, step })
     }
 
@@ -283,6 +287,14 @@ impl<'a> Patches<'a> {
     }
 }
 
+/// The distance between lines nearest to `spacing` with which lines across `width` fill groups:
+/// lanes that are left over cost as much as those that are not.
+fn in_whole_groups(width: f32, spacing: f32, widest: f32) -> f32 {
+    let groups = width / (spacing * GROUP as f32);
+    let fewest = width / (widest * GROUP as f32);
+    width / (GROUP as f32 * (groups - SLACK).max(fewest).ceil().max(1.0))
+}
+
 /// Four times the variance, in square texels of a level, by which its texels are wider than those
 /// of the base level: each is the mean of a square, variance 1/12, and they are interpolated,
 /// variance 1/6.
@@ -331,9 +343,9 @@ impl Plan<'_> {
     ) -> u64 {
         let Extent { xi, q, .. } = self.extent;
         let spacing = self.spacing;
-        // Centre an even number of lines on the patch.
-        let num_lines = 2 * ((xi[1] - xi[0]) * (0.5 / spacing)).ceil() as usize;
-        let first = (xi[0] + xi[1]) * 0.5 - spacing * (num_lines as f32 * 0.5 - 0.5);
+        // Lines lie in the middles of as many strips, which cover the patch.
+        let num_lines = ((xi[1] - xi[0]) / spacing).round() as usize;
+        let first = xi[0] + spacing * 0.5;
         let num_bins = ((q[1] - q[0]) / self.step).ceil().max(1.0) as usize;
         let has_halves = self.level == 0
             && self.frame.shear.abs() > LEAST_SHEAR
