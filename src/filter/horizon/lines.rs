@@ -205,7 +205,7 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
         let between = self.between(steps, i);
         let [near, far] = &steps.starts;
         let mut values = self.values(near[i], &between);
-        if HALVES {
+        if HALVES && near[i] != far[i] {
             let others = self.values::<CHANNELS>(far[i], &between);
             (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
         }

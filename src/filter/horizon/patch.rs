@@ -81,6 +81,8 @@ pub(super) struct Patches<'a> {
     pub(super) loss: Option<&'a LevelLoss>,
     /// The pixels, eight a vector.
     pub(super) pixels: &'a [Footprints],
+    /// Their ellipses in texels of the base level.
+    pub(super) base: &'a [Ellipses],
     pub(super) horizon: &'a Horizon,
     /// Bins along the shortest ellipse: how finely the kernel is cut.
     pub(super) num_bins: f32,
@@ -163,19 +165,24 @@ impl<'a> Patches<'a> {
         let PatchScratch { picked, ellipses, pixels: on_lines, .. } = scratch;
         // Picks ascend: only these vectors hold any.
         let first_vector = usize::from(picks[0] / 8);
-        let pixels = &self.pixels[first_vector..=usize::from(picks[picks.len() - 1] / 8)];
+        let vectors = first_vector..=usize::from(picks[picks.len() - 1] / 8);
+        let (pixels, base) = (&self.pixels[vectors.clone()], &self.base[vectors]);
         masks(picks, first_vector, pixels.len(), picked);
-        let (level, middle) = self.choose_level(pixels, picked, picks.len())?;
+        let middle = means(pixels, picked, picks.len());
+        let level = self.choose_level(base, picked, picks.len(), middle[1])?;
         // Lay the lines.
-        let texels = self.surface.levels()[level].texels_per_repeat();
+        let [texels, base_texels] =
+            [level, 0].map(|level| self.surface.levels()[level].texels_per_repeat());
+        let [scale, scale_v] = [0, 1].map(|i| texels[i] / base_texels[i]);
         let blur = blur(level);
         // A coarse level's texels blur by themselves, so the ellipses are made narrower by as much.
         ellipses.clear();
-        ellipses.extend(
-            pixels
-                .iter()
-                .map(|p| Ellipses::new(p, texels, self.horizon.max_anisotropy).sharpened(blur)),
-        );
+        if scale == scale_v {
+            ellipses.extend(base.iter().map(|base| base.scaled(scale).sharpened(blur)));
+        } else {
+            let most = self.horizon.max_anisotropy;
+            ellipses.extend(pixels.iter().map(|p| Ellipses::new(p, texels, most).sharpened(blur)));
+        }
         // Flat relief may be walked either way: along the longer side, so that fewer lines serve.
         let [a, c] =
             [ellipses[0].a, ellipses[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
@@ -259,35 +266,28 @@ impl<'a> Patches<'a> {
         }
     }
 
-    /// The level of a patch, by the geometric mean of the widest and the narrowest footprint; and
-    /// the means of places and displacements. `None` where footprints differ too much.
+    /// The level of a patch, by the geometric mean of the widest and the narrowest footprint and by
+    /// its mean displacement. `None` where footprints differ too much.
     fn choose_level(
         &self,
-        pixels: &[Footprints],
+        base: &[Ellipses],
         picked: &[PixelLanes],
         num: usize,
-    ) -> Option<(usize, [[f32; 2]; 2])> {
-        let base = self.surface.base();
-        let means = means(pixels, picked, num);
-        let [du, dv] = base.in_texels(means[1]);
+        displacement: [f32; 2],
+    ) -> Option<usize> {
+        let [du, dv] = self.surface.base().in_texels(displacement);
         // Find the narrowest, the widest and the longest ellipse; lanes that are not picked take no
         // part, whatever they hold.
-        let (mut least, mut most, mut long) = (f32::MAX, 0.0_f32, 0.0_f32);
-        for (pixels, picked) in pixels.iter().zip(picked) {
-            let ellipses =
-                Ellipses::new(pixels, base.texels_per_repeat(), self.horizon.max_anisotropy);
-            let greatest =
-                |lanes: PixelLanes| (lanes & *picked).to_array().into_iter().fold(0.0, f32::max);
-            let far = PixelLanes::splat(f32::MAX) & !*picked;
-            least = least.min(
-                (ellipses.short & *picked)
-                    .fast_max(far)
-                    .to_array()
-                    .into_iter()
-                    .fold(f32::MAX, f32::min),
-            );
-            (most, long) = (most.max(greatest(ellipses.short)), long.max(greatest(ellipses.long)));
+        let far = PixelLanes::splat(f32::MAX);
+        let (mut least, mut most, mut long) = (far, PixelLanes::ZERO, PixelLanes::ZERO);
+        for (ellipses, picked) in base.iter().zip(picked) {
+            least = least.fast_min(picked.select(ellipses.short, far));
+            most = most.fast_max(ellipses.short & *picked);
+            long = long.fast_max(ellipses.long & *picked);
         }
+        let least = least.to_array().into_iter().fold(f32::MAX, f32::min);
+        let [most, long] =
+            [most, long].map(|lanes| lanes.to_array().into_iter().fold(0.0, f32::max));
         if most > MOST_RATIO * least {
             return None;
         }
@@ -304,7 +304,7 @@ impl<'a> Patches<'a> {
             // level finer instead.
             None => usize::from(self.is_lit),
         };
-        Some((if bias == 0 { level } else { finer_by(bias) }, means))
+        Some(if bias == 0 { level } else { finer_by(bias) })
     }
 }
 
