@@ -27,6 +27,7 @@ mod kernel;
 mod lines;
 mod patch;
 mod pixels;
+mod plan;
 mod sweep;
 mod sweep_frame;
 mod walk;

@@ -87,9 +87,9 @@ impl<const CHANNELS: usize> Segment<CHANNELS> {
         let of_next = length * middle;
         let of_last = length - of_next;
         let mut all = sums;
-        for i in 0..CHANNELS {
+        (0..CHANNELS).for_each(|i| {
             all[i] = all[i] + next.values[i] * of_next + last.values[i] * of_last;
-        }
+        });
         all
     }
 
@@ -99,9 +99,9 @@ impl<const CHANNELS: usize> Segment<CHANNELS> {
         let Self { last, next, half_inverse } = self;
         let part = (place - last.place) * (*half_inverse + *half_inverse);
         let mut all = last.values;
-        for i in 0..CHANNELS {
+        (0..CHANNELS).for_each(|i| {
             all[i] = last.values[i] + (next.values[i] - last.values[i]) * part;
-        }
+        });
         all
     }
 }
@@ -161,9 +161,8 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
             let bin = record.floor();
             let long = bin.simd_gt(self.bin_end).to_bitmask() & full;
             if long != 0 {
-                // Copies, so that what is used at each step needs not be in memory.
-                let segment = segment;
-                fill((long, self.at), [self.bin_end, bin], &segment, bins);
+                // A copy, so that what is used at each step needs not be in memory.
+                fill((long, self.at), [self.bin_end, bin], segment, bins);
             }
             // Begin the sums of the bins that the records lie in now.
             let rest = segment.added_to([LineLanes::ZERO; CHANNELS], bin, record);
@@ -179,7 +178,7 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
 fn fill<const CHANNELS: usize>(
     (lanes, at): (u32, usize),
     [from, to]: [LineLanes; 2],
-    segment: &Segment<CHANNELS>,
+    segment: Segment<CHANNELS>,
     bins: &mut [[Row; CHANNELS]],
 ) {
     let mut number = from;
