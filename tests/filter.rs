@@ -481,7 +481,8 @@ fn parallax_is_the_references() {
 /// is off by 2e-4, f32 on steep relief by as much.
 const HORIZON_ERROR: f64 = 2e-3;
 
-/// The 64 lines that the sweep takes.
+/// The lines that the sweep takes where the settings say 64: 0.62 times as many, and then so many
+/// that they fill three groups of sixteen.
 fn reference_lines<'a>(surface: &'a Surface, pixel: &Footprint) -> Lines<'a> {
     let texels = surface.base().texels_per_repeat();
     let ellipse = Ellipse::new(pixel, texels, Formulas::Meant).bounded(64.0);
@@ -496,7 +497,7 @@ fn reference_lines<'a>(surface: &'a Surface, pixel: &Footprint) -> Lines<'a> {
         steps_per_row: 1,
     };
     let width = 2.0 * lines.half_width();
-    Lines { spacing: width / (0.65 * 64.0), ..lines }.with_half_rows()
+    Lines { spacing: width / 48.0, ..lines }.with_half_rows()
 }
 
 /// A floor's footprint: `aspect` times as long along the view as across.

@@ -33,6 +33,15 @@ impl Ellipses {
         Self::bounded([a, b, c], root * root, max_anisotropy)
     }
 
+    /// The ellipses in smaller texels, so many times as many a repeat along u and along v.
+    #[inline]
+    pub fn scaled(&self, times: f32) -> Self {
+        let square = times * times;
+        let Self { a, b, c, f, short, long } = *self;
+        let [a, b, c, short, long] = [a, b, c, short, long].map(|lanes| lanes * square);
+        Self { a, b, c, f: f * (square * square), short, long }
+    }
+
     /// One of the ellipses.
     pub fn lane(&self, lane: usize) -> Ellipse {
         let [a, b, c, f] = [self.a, self.b, self.c, self.f].map(|lanes| lanes.as_array()[lane]);

@@ -226,10 +226,14 @@ pub fn for_sweep(surface: &Surface, extent: &SweepExtent, lines: u32) -> usize {
 }
 
 /// How many times too long the sweeps of eight pixels would be on the levels that their widths ask
-/// for.
-pub fn rows_in_excess(surface: &Surface, pixels: &Footprints, horizon: &Horizon) -> PixelLanes {
+/// for; `ellipses` are theirs in texels of the base level.
+pub fn rows_in_excess(
+    surface: &Surface,
+    pixels: &Footprints,
+    ellipses: &Ellipses,
+    horizon: &Horizon,
+) -> PixelLanes {
     let base = surface.base().texels_per_repeat();
-    let ellipses = Ellipses::new(pixels, base, horizon.max_anisotropy);
     let [du, dv] = [0, 1].map(|i| pixels.displacement[i].abs() * base[i]);
     let rows = ellipses.long.sqrt() * 2.0 + du.fast_max(dv);
     let most_across = SWEEP_TEXELS * horizon.lines as f32;

@@ -191,7 +191,8 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
         let of_row =
             |starts: &[usize; SLOTS]| between.halves_at(rows.words(), starts[i] + rows.stride())[1];
         let [near, far] = &steps.starts;
-        if HALVES { (of_row(near) + of_row(far)) * 0.5 } else { of_row(near) }
+        // Every other step is a row: a branch that is foreseen.
+        if HALVES && near[i] != far[i] { (of_row(near) + of_row(far)) * 0.5 } else { of_row(near) }
     }
 
     /// The texels of a step.
@@ -204,7 +205,7 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
         let between = self.between(steps, i);
         let [near, far] = &steps.starts;
         let mut values = self.values(near[i], &between);
-        if HALVES {
+        if HALVES && near[i] != far[i] {
             let others = self.values::<CHANNELS>(far[i], &between);
             (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
         }

@@ -27,6 +27,7 @@ mod kernel;
 mod lines;
 mod patch;
 mod pixels;
+mod plan;
 mod sweep;
 mod sweep_frame;
 mod walk;
@@ -34,7 +35,7 @@ mod walk;
 use super::batch::{Batch, Filtered, LevelChoice, Work};
 use super::far_field::FarField;
 use super::prepared::Prepared;
-use crate::footprint::Footprints;
+use crate::footprint::{Ellipses, Footprints};
 use crate::settings::Horizon;
 use crate::simd::PixelLanes;
 use crate::texture::{Surface, Texel};
@@ -48,13 +49,15 @@ const FINE_BINS: f32 = 256.0;
 
 /// Bins along the shortest ellipse of a patch that serve a picture, for each texel that the
 /// settings ask for across: unlit and lit, where lights are asked for each bin; and the fewest.
-const BINS: [f32; 2] = [0.5, 1.6];
-const LEAST_BINS: f32 = 5.0;
+const BINS: [f32; 2] = [0.375, 1.6];
+const LEAST_BINS: f32 = 4.0;
 
 /// Buffers of the filter, kept between calls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HorizonScratch {
     patch: PatchScratch,
+    /// The pixels' ellipses in texels of the base level.
+    base: Vec<Ellipses>,
     /// How much of each pixel the tables give.
     shares: Vec<[f32; 8]>,
     /// Pixels that are swept: vector times 8 plus lane.
@@ -77,8 +80,9 @@ pub(super) fn colors(
     let mut lights = batch.lights;
     let mut num_rows = 0;
     for (pixels, out) in batch.pixels.chunks(NUM_VECTORS).zip(out.chunks_mut(NUM_VECTORS)) {
-        let HorizonScratch { patch, shares, near, found } = scratch;
-        share_out(surface, far, pixels, horizon, (shares, near));
+        let HorizonScratch { patch, base, shares, near, found } = scratch;
+        base_ellipses(surface, pixels, horizon, base);
+        share_out(surface, far, (pixels, base), horizon, (shares, near));
         // Sweep what is near.
         found.clear();
         found.resize(near.len(), Texel::default());
@@ -86,7 +90,7 @@ pub(super) fn colors(
         let (of_these, others) = lights.split_at(if lights.is_empty() { 0 } else { near.len() });
         let patches = Patches {
             is_alone: batch.is_alone,
-            ..patches(prepared, pixels, horizon, num_bins, batch.is_lit())
+            ..patches(prepared, (pixels, base), horizon, num_bins, batch.is_lit())
         };
         num_rows += patches.means(near, of_these, patch, found);
         lights = others;
@@ -119,10 +123,12 @@ pub(super) fn levels(
     let far = far_field(prepared, horizon, is_lit);
     let mut all = Vec::with_capacity(pixels.len());
     for pixels in pixels.chunks(NUM_VECTORS) {
-        let HorizonScratch { patch, shares, near, .. } = scratch;
-        share_out(prepared.surface(), far.as_deref(), pixels, horizon, (shares, near));
+        let HorizonScratch { patch, base, shares, near, .. } = scratch;
+        base_ellipses(prepared.surface(), pixels, horizon, base);
+        share_out(prepared.surface(), far.as_deref(), (pixels, base), horizon, (shares, near));
         let mut levels = Vec::with_capacity(near.len());
-        patches(prepared, pixels, horizon, picture_bins(horizon, is_lit), is_lit).levels(
+        let num_bins = picture_bins(horizon, is_lit);
+        patches(prepared, (pixels, base), horizon, num_bins, is_lit).levels(
             near,
             patch,
             &mut levels,
@@ -150,18 +156,30 @@ fn far_field(
     if is_lit || !horizon.far_field { None } else { prepared.far_field(horizon.far_field_mib) }
 }
 
+/// The ellipses of pixels in texels of the base level, from which those on other levels are made.
+fn base_ellipses(
+    surface: &Surface,
+    pixels: &[Footprints],
+    horizon: &Horizon,
+    base: &mut Vec<Ellipses>,
+) {
+    let texels = surface.base().texels_per_repeat();
+    base.clear();
+    base.extend(pixels.iter().map(|p| Ellipses::new(p, texels, horizon.max_anisotropy)));
+}
+
 /// How much of each pixel the tables give, and the pixels that they do not give wholly.
 fn share_out(
     surface: &Surface,
     far: Option<&FarField>,
-    pixels: &[Footprints],
+    (pixels, base): (&[Footprints], &[Ellipses]),
     horizon: &Horizon,
     (shares, near): (&mut Vec<[f32; 8]>, &mut Vec<u8>),
 ) {
     shares.clear();
     near.clear();
-    for (vector, pixels) in pixels.iter().enumerate() {
-        let of_far = |far: &FarField| far.shares(surface, pixels, horizon);
+    for (vector, (pixels, base)) in pixels.iter().zip(base).enumerate() {
+        let of_far = |far: &FarField| far.shares(surface, (pixels, base), horizon);
         let of_far = far.map_or(PixelLanes::ZERO, of_far).to_array();
         near.extend(
             pixels
@@ -180,12 +198,12 @@ fn picture_bins(horizon: &Horizon, is_lit: bool) -> f32 {
 
 fn patches<'a>(
     prepared: &'a Prepared,
-    pixels: &'a [Footprints],
+    (pixels, base): (&'a [Footprints], &'a [Ellipses]),
     horizon: &'a Horizon,
     num_bins: f32,
     is_lit: bool,
 ) -> Patches<'a> {
     let loss = if is_lit { None } else { prepared.level_loss() };
     let surface = prepared.surface();
-    Patches { surface, loss, pixels, horizon, num_bins, is_lit, is_alone: false }
+    Patches { surface, loss, pixels, base, horizon, num_bins, is_lit, is_alone: false }
 }

@@ -4,9 +4,10 @@
 //! patch cannot hold well are split in two, at last into single pixels. What is planned is then
 //! swept, or only told to who asks for the levels.
 
-use super::grid::{Grid, MOST_LINES, Profile};
+use super::grid::Profile;
 use super::kernel::Totals;
 use super::pixels::PixelOnLines;
+use super::plan::{Extent, Plan, WIDEST, in_whole_groups};
 use super::sweep_frame::{SweepFrame, means};
 use crate::filter::points;
 use crate::footprint::levels::{SweepExtent, for_sweep};
@@ -25,23 +26,11 @@ const _: () = assert!(MOST_PIXELS <= 1 << u8::BITS, "a pick is a byte");
 /// Lines across the widest ellipse of a patch for each texel that the settings ask for, unless that
 /// puts them farther apart than [`WIDEST`]; and the fewest. Fewer lines than texels serve, since a
 /// line's colours are interpolated.
-const LINES: [f32; 2] = [0.65, 5.0];
+const LINES: [f32; 2] = [0.62, 5.0];
 
 /// The same on the base level, where lines come closer until they are a texel apart: nothing finer
 /// is left to pay for. 2.2 dB on the wall at 640x360, 4 on the floor at 1280x720.
-const BASE_LINES: f32 = 1.3;
-
-/// Where texels are about as large as pixels, and lines lean by at least so much, they are read half
-/// way between rows, too: a bilinear surface has a kink wherever a line crosses a column, and bends
-/// between. 2.5 dB on the wall at 1280x720, for a tenth of its time.
-const LEAST_SHEAR: f32 = 0.15;
-
-/// Greatest half width, in texels, of an ellipse that shows such kinks.
-const KINK_WIDTH: f32 = 4.0;
-
-/// Greatest distance between lines in texels: sixteen lines and their neighbours lie within 32
-/// texels, two loads.
-const WIDEST: f32 = 1.99;
+const BASE_LINES: f32 = 1.1;
 
 /// Most bins of a patch of several pixels: as many as fit the second cache with their 64 lines.
 const MOST_BINS: f32 = 256.0;
@@ -49,6 +38,14 @@ const MOST_BINS: f32 = 256.0;
 /// How much longer the widest ellipse of a patch may be across than the narrowest, squared: the
 /// narrowest decides how finely bins cut, the widest how many lines there are.
 const MOST_RATIO: f32 = 2.25;
+
+/// Patches of so few pixels are where displacements grow too fast for sweeps to be shared, at the
+/// outlines of curved surfaces: one pixel in twelve of a torus, and half of all its rows. They take
+/// a level as if they were so much wider, and lone pixels as if they were so much longer: a fifth
+/// of the rows for 0.2 dB.
+const FEW: usize = 3;
+const FEW_WIDER: f32 = 2.0;
+const LONE_LONGER: f32 = 3.0;
 
 /// Buffers of sweeps, kept between them.
 #[derive(Clone, Debug, Default)]
@@ -70,37 +67,14 @@ pub(super) struct Patches<'a> {
     pub(super) loss: Option<&'a LevelLoss>,
     /// The pixels, eight a vector.
     pub(super) pixels: &'a [Footprints],
+    /// Their ellipses in texels of the base level.
+    pub(super) base: &'a [Ellipses],
     pub(super) horizon: &'a Horizon,
     /// Bins along the shortest ellipse: how finely the kernel is cut.
     pub(super) num_bins: f32,
     pub(super) is_lit: bool,
     /// Whether each pixel is swept by itself.
     pub(super) is_alone: bool,
-}
-
-/// A patch that one sweep can hold.
-struct Plan<'a> {
-    level: usize,
-    frame: SweepFrame<'a>,
-    extent: Extent,
-    /// Greatest distance between lines over that in the middle.
-    most_scale: f32,
-    /// Distance between lines in the middle, in texels.
-    spacing: f32,
-    /// Length of a bin in rows.
-    step: f32,
-}
-
-/// The extent of a patch: least and greatest `xi` and `q` of its ellipses, the greatest width and
-/// the least height.
-#[derive(Clone, Copy, Debug)]
-struct Extent {
-    xi: [f32; 2],
-    q: [f32; 2],
-    half_width: f32,
-    half_height: f32,
-    /// Rows times lines of all pixels, each swept on its own.
-    area: f32,
 }
 
 impl<'a> Patches<'a> {
@@ -152,19 +126,24 @@ impl<'a> Patches<'a> {
         let PatchScratch { picked, ellipses, pixels: on_lines, .. } = scratch;
         // Picks ascend: only these vectors hold any.
         let first_vector = usize::from(picks[0] / 8);
-        let pixels = &self.pixels[first_vector..=usize::from(picks[picks.len() - 1] / 8)];
+        let vectors = first_vector..=usize::from(picks[picks.len() - 1] / 8);
+        let (pixels, base) = (&self.pixels[vectors.clone()], &self.base[vectors]);
         masks(picks, first_vector, pixels.len(), picked);
-        let (level, middle) = self.choose_level(pixels, picked, picks.len())?;
+        let middle = means(pixels, picked, picks.len());
+        let level = self.choose_level(base, picked, picks.len(), middle[1])?;
         // Lay the lines.
-        let texels = self.surface.levels()[level].texels_per_repeat();
+        let [texels, base_texels] =
+            [level, 0].map(|level| self.surface.levels()[level].texels_per_repeat());
+        let [scale, scale_v] = [0, 1].map(|i| texels[i] / base_texels[i]);
         let blur = blur(level);
         // A coarse level's texels blur by themselves, so the ellipses are made narrower by as much.
         ellipses.clear();
-        ellipses.extend(
-            pixels
-                .iter()
-                .map(|p| Ellipses::new(p, texels, self.horizon.max_anisotropy).sharpened(blur)),
-        );
+        if scale == scale_v {
+            ellipses.extend(base.iter().map(|base| base.scaled(scale).sharpened(blur)));
+        } else {
+            let most = self.horizon.max_anisotropy;
+            ellipses.extend(pixels.iter().map(|p| Ellipses::new(p, texels, most).sharpened(blur)));
+        }
         // Flat relief may be walked either way: along the longer side, so that fewer lines serve.
         let [a, c] =
             [ellipses[0].a, ellipses[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
@@ -201,6 +180,7 @@ impl<'a> Patches<'a> {
             num_lines
         };
         let spacing = (WIDEST / most_scale).min(extent.half_width * (2.0 / num_lines));
+        let spacing = in_whole_groups(extent.xi[1] - extent.xi[0], spacing, WIDEST / most_scale);
         Some(Plan { level, frame, extent, most_scale, spacing, step })
     }
 
@@ -233,42 +213,48 @@ impl<'a> Patches<'a> {
         num_rows
     }
 
-    /// The level of a patch, by the geometric mean of the widest and the narrowest footprint; and
-    /// the means of places and displacements. `None` where footprints differ too much.
+    /// What so many pixels sweep, as their level is to see it: what few of them sweep is larger for
+    /// the price of a coarser one, unless each is wanted by itself.
+    fn extent_of(&self, num: usize, [across, along]: [f32; 2], depth: f32) -> SweepExtent {
+        match num {
+            1 if !self.is_alone => SweepExtent {
+                across: across * FEW_WIDER,
+                along: along * LONE_LONGER,
+                depth: depth * LONE_LONGER,
+            },
+            2..=FEW => SweepExtent { across: across * FEW_WIDER, along, depth },
+            _ => SweepExtent { across, along, depth },
+        }
+    }
+
+    /// The level of a patch, by the geometric mean of the widest and the narrowest footprint and by
+    /// its mean displacement. `None` where footprints differ too much.
     fn choose_level(
         &self,
-        pixels: &[Footprints],
+        base: &[Ellipses],
         picked: &[PixelLanes],
         num: usize,
-    ) -> Option<(usize, [[f32; 2]; 2])> {
-        let base = self.surface.base();
-        let means = means(pixels, picked, num);
-        let [du, dv] = base.in_texels(means[1]);
+        displacement: [f32; 2],
+    ) -> Option<usize> {
+        let [du, dv] = self.surface.base().in_texels(displacement);
         // Find the narrowest, the widest and the longest ellipse; lanes that are not picked take no
         // part, whatever they hold.
-        let (mut least, mut most, mut long) = (f32::MAX, 0.0_f32, 0.0_f32);
-        for (pixels, picked) in pixels.iter().zip(picked) {
-            let ellipses =
-                Ellipses::new(pixels, base.texels_per_repeat(), self.horizon.max_anisotropy);
-            let greatest =
-                |lanes: PixelLanes| (lanes & *picked).to_array().into_iter().fold(0.0, f32::max);
-            let far = PixelLanes::splat(f32::MAX) & !*picked;
-            least = least.min(
-                (ellipses.short & *picked)
-                    .fast_max(far)
-                    .to_array()
-                    .into_iter()
-                    .fold(f32::MAX, f32::min),
-            );
-            (most, long) = (most.max(greatest(ellipses.short)), long.max(greatest(ellipses.long)));
+        let far = PixelLanes::splat(f32::MAX);
+        let (mut least, mut most, mut long) = (far, PixelLanes::ZERO, PixelLanes::ZERO);
+        for (ellipses, picked) in base.iter().zip(picked) {
+            least = least.fast_min(picked.select(ellipses.short, far));
+            most = most.fast_max(ellipses.short & *picked);
+            long = long.fast_max(ellipses.long & *picked);
         }
+        let least = least.to_array().into_iter().fold(f32::MAX, f32::min);
+        let [most, long] =
+            [most, long].map(|lanes| lanes.to_array().into_iter().fold(0.0, f32::max));
         if most > MOST_RATIO * least {
             return None;
         }
         // The axes are squares: a fourth root of their product is the geometric mean.
         let across = 2.0 * (most * least).sqrt().sqrt();
-        let extent =
-            SweepExtent { across, along: 2.0 * long.sqrt(), depth: du.abs().max(dv.abs()) };
+        let extent = self.extent_of(num, [across, 2.0 * long.sqrt()], du.abs().max(dv.abs()));
         let finer_by = |bias: usize| for_sweep(self.surface, &extent, self.horizon.lines << bias);
         let level = finer_by(0);
         let bias = match self.loss {
@@ -279,7 +265,7 @@ impl<'a> Patches<'a> {
             // level finer instead.
             None => usize::from(self.is_lit),
         };
-        Some((if bias == 0 { level } else { finer_by(bias) }, means))
+        Some(if bias == 0 { level } else { finer_by(bias) })
     }
 }
 
@@ -296,74 +282,4 @@ fn masks(picks: &[u8], first_vector: usize, num_vectors: usize, masks: &mut Vec<
     picks.iter().for_each(|pick| bits[usize::from(pick / 8)] |= 1 << (pick % 8));
     masks.clear();
     masks.extend(bits[first_vector..][..num_vectors].iter().map(|bits| bits_mask(*bits)));
-}
-
-impl Extent {
-    fn of(pixels: &[PixelOnLines], depth: f32) -> Self {
-        let mut extent = Self {
-            xi: [f32::MAX, f32::MIN],
-            q: [f32::MAX, f32::MIN],
-            half_width: 0.0,
-            half_height: f32::MAX,
-            area: 0.0,
-        };
-        for pixel in pixels {
-            let PixelOnLines { xi, q, half_width, half_height, .. } = *pixel;
-            extent.xi = [extent.xi[0].min(xi - half_width), extent.xi[1].max(xi + half_width)];
-            extent.q = [extent.q[0].min(q - half_height), extent.q[1].max(q + half_height)];
-            extent.half_width = extent.half_width.max(half_width);
-            extent.half_height = extent.half_height.min(half_height);
-            // By itself the pixel would be walked over its ellipse and down to the deepest relief.
-            extent.area += 2.0 * half_width * (2.0 * half_height + depth);
-        }
-        extent
-    }
-}
-
-impl Plan<'_> {
-    /// Sweeps all lines and adds what they see to the pixels. Returns the number of rows.
-    fn run<const CHANNELS: usize>(
-        &self,
-        profile: &mut Profile<CHANNELS>,
-        pixels: &[PixelOnLines],
-        lights: &[LocalLights],
-        totals: &mut [Totals],
-    ) -> u64 {
-        let Extent { xi, q, .. } = self.extent;
-        let spacing = self.spacing;
-        // Centre an even number of lines on the patch.
-        let num_lines = 2 * ((xi[1] - xi[0]) * (0.5 / spacing)).ceil() as usize;
-        let first = (xi[0] + xi[1]) * 0.5 - spacing * (num_lines as f32 * 0.5 - 0.5);
-        let num_bins = ((q[1] - q[0]) / self.step).ceil().max(1.0) as usize;
-        let has_halves = self.level == 0
-            && self.frame.shear.abs() > LEAST_SHEAR
-            && self.extent.half_width < KINK_WIDTH;
-        let mut num_rows = 0;
-        // Sweep a grid at a time, and weigh it before the next: its bins are still in the cache.
-        for line in (0..num_lines).step_by(MOST_LINES) {
-            let grid = Grid {
-                frame: &self.frame,
-                most_scale: self.most_scale,
-                first: first + line as f32 * spacing,
-                spacing,
-                inverse_spacing: 1.0 / spacing,
-                num_lines: (num_lines - line).min(MOST_LINES),
-                begin: q[0],
-                step: self.step,
-                inverse_step: 1.0 / self.step,
-                num_bins,
-                has_halves,
-            };
-            for (group, range) in grid.ranges(pixels).into_iter().enumerate() {
-                if range[0] < range[1] {
-                    num_rows += profile.sweep(&grid, group, range);
-                }
-            }
-            // A pixel's lines may lie on several grids: the totals go on, in this order everywhere.
-            for (i, (pixel, totals)) in pixels.iter().zip(totals.iter_mut()).enumerate() {
-                totals.add(profile, &grid, pixel, lights.get(i));
-            }
-        }
-        num_rows
-    }
 }

@@ -169,10 +169,11 @@ impl<'a> SweepFrame<'a> {
             self.tilt = (x_along * qq - q_along * qx) / determinant;
             self.spread = x_across / (xx * self.depth);
         } else {
-            // Pixels in one line do not tell the two directions apart: take one growth along and
-            // across, and no tilt.
-            self.growth = (q_along + x_along) / (qq + xx).max(f32::MIN_POSITIVE);
-            self.spread = self.growth / self.depth;
+            // Pixels in one line, as two always are, do not tell the two directions apart: take the
+            // least growth and tilt that there may be.
+            let inverse = 1.0 / (qq + xx).max(f32::MIN_POSITIVE);
+            (self.growth, self.tilt) = (q_along * inverse, x_along * inverse);
+            self.spread = if xx > 1e-2 * qq { x_across / (xx * self.depth) } else { 0.0 };
         }
         // Measure what the fit leaves over in radii of each pixel's own ellipse.
         let mut misfit = PixelLanes::ZERO;

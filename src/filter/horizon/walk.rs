@@ -87,20 +87,22 @@ impl<const CHANNELS: usize> Segment<CHANNELS> {
         let of_next = length * middle;
         let of_last = length - of_next;
         let mut all = sums;
-        for i in 0..CHANNELS {
+        (0..CHANNELS).for_each(|i| {
             all[i] = all[i] + next.values[i] * of_next + last.values[i] * of_last;
-        }
+        });
         all
     }
 
-    /// The colour of one line at a place.
-    fn at(&self, lane: usize, place: f32) -> [f32; CHANNELS] {
-        let of = |lanes: &LineLanes| lanes.as_array()[lane];
-        let part = (place - of(&self.last.place)) * of(&self.half_inverse) * 2.0;
-        std::array::from_fn(|i| {
-            let [last, next] = [&self.last.values[i], &self.next.values[i]].map(of);
-            last + (next - last) * part
-        })
+    /// The colours at places.
+    #[inline(always)]
+    fn at(&self, place: LineLanes) -> [LineLanes; CHANNELS] {
+        let Self { last, next, half_inverse } = self;
+        let part = (place - last.place) * (*half_inverse + *half_inverse);
+        let mut all = last.values;
+        (0..CHANNELS).for_each(|i| {
+            all[i] = last.values[i] + (next.values[i] - last.values[i]) * part;
+        });
+        all
     }
 }
 
@@ -159,9 +161,8 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
             let bin = record.floor();
             let long = bin.simd_gt(self.bin_end).to_bitmask() & full;
             if long != 0 {
-                // Copies, so that what is used at each step needs not be in memory.
-                let segment = segment;
-                fill((long, self.at), [self.bin_end, bin], &segment, bins);
+                // A copy, so that what is used at each step needs not be in memory.
+                fill((long, self.at), [self.bin_end, bin], segment, bins);
             }
             // Begin the sums of the bins that the records lie in now.
             let rest = segment.added_to([LineLanes::ZERO; CHANNELS], bin, record);
@@ -176,16 +177,20 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
 #[inline(never)]
 fn fill<const CHANNELS: usize>(
     (lanes, at): (u32, usize),
-    range: [LineLanes; 2],
-    segment: &Segment<CHANNELS>,
+    [from, to]: [LineLanes; 2],
+    segment: Segment<CHANNELS>,
     bins: &mut [[Row; CHANNELS]],
 ) {
-    let [from, to] = range.map(|bin| bin.fast_trunc_int().to_array());
-    for lane in set_bits(lanes) {
-        for number in from[lane]..to[lane] {
-            let color = segment.at(lane, number as f32 + 0.5);
-            let bin = &mut bins[number as usize];
-            (0..CHANNELS).for_each(|i| bin[i][at + lane] = color[i]);
+    let mut number = from;
+    let mut left = lanes;
+    while left != 0 {
+        let colors = segment.at(number + 0.5).map(LineLanes::to_array);
+        let numbers = number.fast_trunc_int().to_array();
+        for lane in set_bits(left) {
+            let bin = &mut bins[numbers[lane] as usize];
+            (0..CHANNELS).for_each(|i| bin[i][at + lane] = colors[i][lane]);
         }
+        number += LineLanes::ONE;
+        left &= number.simd_lt(to).to_bitmask();
     }
 }
