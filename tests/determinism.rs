@@ -85,6 +85,17 @@ fn visible_cases(visible: Visible) -> [(&'static str, Visible); 6] {
     ]
 }
 
+/// Frames whose light is baked.
+fn baked_cases() -> Vec<Case> {
+    let lit = Settings { lighting: Lighting::Lit, ..small(Filter::default()) };
+    let mut cases = Vec::new();
+    for (wrap, size) in [(Wrap::Repeat, 200), (Wrap::Mirror, 130), (Wrap::Clamp, 64)] {
+        cases.push((format!("{BAKED}, {wrap:?}"), wrap, size, lit.clone()));
+    }
+    cases.push((format!("{BAKED}, flat"), Wrap::Repeat, 64, Settings { parallax: false, ..lit }));
+    cases
+}
+
 /// Every filter and every option, one frame each.
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
@@ -144,6 +155,7 @@ fn cases() -> Vec<Case> {
         small(Filter::Horizon(Horizon { far_field_mib: 1, ..horizon })),
     ));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, small(Filter::Horizon(horizon))));
+    cases.extend(baked_cases());
     // Texels a side that are no power of two wrap by a division.
     for (name, filter) in [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa)), ("One ray", ray)] {
         cases.push((format!("{name}, 50 texels"), Wrap::Repeat, 50, small(filter)));
@@ -151,8 +163,15 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-fn draw(&(_, wrap, size, ref settings): &Case) -> Frame {
-    Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene").render()
+/// How cases begin that are lit by the sun and the sky alone, so that light is baked.
+const BAKED: &str = "baked";
+
+fn draw(&(ref name, wrap, size, ref settings): &Case) -> Frame {
+    let mut scene = scene(wrap, size);
+    if name.starts_with(BAKED) {
+        scene.lights.retain(|light| matches!(light, Light::Sun { .. }));
+    }
+    Renderer::new(scene, settings.clone()).expect("a valid scene").render()
 }
 
 /// 64-bit FNV-1a of the frame's bits and of its 8-bit bytes.

@@ -15,9 +15,12 @@ pub struct Prepared {
     surface: Arc<Surface>,
     relief: Option<Arc<Relief>>,
     /// The tables, if the surface has any, for so many MiB.
-    far: Arc<Mutex<Option<(u32, Option<Arc<FarField>>)>>>,
+    far: Arc<Mutex<Option<Tables>>>,
     has_far_field: bool,
 }
+
+/// Tables, if a surface has any, for so many MiB.
+type Tables = (u32, Option<Arc<FarField>>);
 
 /// What is made of the heights.
 #[derive(Debug)]

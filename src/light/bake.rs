@@ -14,8 +14,9 @@
 //! It takes one direction of each beam over the whole surface: for flat pieces of meshes, under
 //! suns and skies.
 
+use super::disc::{Disc, spiral};
 use crate::relief::{LitParts, MAX_SLOPE};
-use crate::scene::{Light, Sky, angle};
+use crate::scene::{Light, Sky};
 use crate::simd::TexelLanes;
 use crate::texture::{Level, Surface, unpack_normals};
 use glam::Vec3;
@@ -96,15 +97,9 @@ impl TextureFrame {
     /// Beams from points spread evenly over a sun's disc.
     fn sun(&self, to_sun: Vec3, intensity: Vec3, degrees: f32) -> Vec<Beam> {
         let [per_half, most] = SUN_POINTS;
-        let num = ((degrees * 2.0 * per_half).ceil()).clamp(1.0, most) as usize;
-        let [x, y] = <[Vec3; 2]>::from(to_sun.any_orthonormal_pair());
-        let [cos, sin] = angle::cos_sin(f64::from(degrees) * (0.5 / 360.0));
-        let radius = (sin / cos) as f32;
-        let beam = |[cos, sin]: [f32; 2], r: f32| {
-            let to_light = (to_sun + (x * cos + y * sin) * (r * radius)).normalize_or_zero();
-            self.beam(to_light, intensity / num as f32)
-        };
-        spiral(num).filter_map(|(turn, share)| beam(turn, share.sqrt())).collect()
+        let num = (degrees * 2.0 * per_half).ceil().clamp(1.0, most) as usize;
+        let points = Disc::new(to_sun, degrees).points(num);
+        points.filter_map(|to_light| self.beam(to_light, intensity / num as f32)).collect()
     }
 
     /// Beams from all over the sky. Directions lie as densely as their light counts on the polygon;
@@ -186,18 +181,4 @@ impl Sums {
     fn at(&self, x: usize, y: usize) -> [f32; 3] {
         self.lanes[y * self.width.div_ceil(8) + x / 8].map(|lanes| lanes.as_array()[x % 8])
     }
-}
-
-/// Points of a disc (Vogel 1979), each with the same area: the direction from the middle, and the
-/// share of the disc that is nearer to it.
-fn spiral(num: usize) -> impl Iterator<Item = ([f32; 2], f32)> {
-    // Cosine and sine of the golden angle, pi (3 - sqrt 5): turned by products, since sines of the
-    // platform differ from machine to machine.
-    const TURN: [f64; 2] = [-0.737_368_878_078_319_8, 0.675_490_294_261_523_7];
-    let mut turn = [1.0_f64, 0.0];
-    (0..num).map(move |i| {
-        let [x, y] = turn;
-        turn = [x * TURN[0] - y * TURN[1], x * TURN[1] + y * TURN[0]];
-        ([x as f32, y as f32], (i as f32 + 0.5) / num as f32)
-    })
 }

@@ -13,11 +13,13 @@
 //! than one it is: `a^2 + 2 (1 - |n|) / |n|` (Toksvig 2005, "Mipmapping normal maps").
 
 mod bake;
+mod disc;
 pub mod exact;
 mod local;
 pub mod reflection;
 mod surface_point;
 
 pub use bake::{Beam, TextureFrame, baked};
+pub use disc::Disc;
 pub use local::{LocalLights, Reflected};
 pub use surface_point::SurfacePoint;

@@ -41,7 +41,7 @@ pub struct Fresnel {
 impl Fresnel {
     /// Of a material whose base colour is `base` at the place.
     pub fn new(material: &Material, base: Vec3) -> Self {
-        let Fresnel { straight, grazing } = Self::of_dielectric(material);
+        let Self { straight, grazing } = Self::of_dielectric(material);
         let metallic = material.metallic;
         Self {
             straight: straight * (1.0 - metallic) + base * metallic,

@@ -5,10 +5,10 @@
 //! surface unlit. Pieces of one material that lie in the same directions, such as all triangles of
 //! a floor, share one. Curved meshes are lit place by place.
 
-use super::prepared::PreparedScene;
+use super::ground::LitPiece;
 use crate::filter::Prepared;
 use crate::light::{TextureFrame, baked};
-use crate::scene::{Material, Mesh, Scene};
+use crate::scene::{Light, Material, Mesh, Scene, Sky};
 use glam::Vec3;
 
 /// Most texels of all baked surfaces of a scene together, some hundred MiB. Pieces beyond, in the
@@ -48,7 +48,18 @@ struct Piece {
     material: usize,
     frame: TextureFrame,
     /// As it is seen from the front and from behind, where it is seen so.
-    sides: [Option<Prepared>; 2],
+    sides: [Option<Side>; 2],
+    /// How far its corners lie along the normal, the least and the greatest.
+    range: [f32; 2],
+}
+
+/// A lit side of a piece.
+#[derive(Debug)]
+struct Side {
+    normal: Vec3,
+    lit: Prepared,
+    /// See [`LitPiece::apart`].
+    apart: Vec<Prepared>,
 }
 
 impl Baked {
@@ -74,12 +85,22 @@ impl Baked {
         let mut piece_of = |triangle: &[u32; 3]| {
             let frame = flat_frame(mesh, triangle)?;
             let is_same = |p: &Piece| p.material == mesh.material && is_same(&p.frame, &frame);
-            if let Some(found) = self.pieces.iter().position(is_same) {
-                return Some(found as u32);
+            let piece = self.pieces.iter().position(is_same);
+            let piece = if let Some(piece) = piece {
+                piece
+            } else {
+                *left = left.checked_sub(num_texels)?;
+                let range = [f32::INFINITY, f32::NEG_INFINITY];
+                let material = mesh.material;
+                self.pieces.push(Piece { material, frame, sides: [None, None], range });
+                self.pieces.len() - 1
+            };
+            let Piece { frame, range: [least, most], .. } = &mut self.pieces[piece];
+            for corner in triangle {
+                let along = frame.normal.dot(mesh.positions[*corner as usize]);
+                (*least, *most) = (least.min(along), most.max(along));
             }
-            *left = left.checked_sub(num_texels)?;
-            self.pieces.push(Piece { material: mesh.material, frame, sides: [None, None] });
-            (self.pieces.len() - num_before <= MOST_PIECES).then_some(self.pieces.len() as u32 - 1)
+            (self.pieces.len() - num_before <= MOST_PIECES).then_some(piece as u32)
         };
         let Some(each) = mesh.triangles.iter().map(&mut piece_of).collect::<Option<Vec<u32>>>()
         else {
@@ -91,8 +112,13 @@ impl Baked {
         Some(if is_one { OfMesh::All(each[0]) } else { OfMesh::Each(each) })
     }
 
-    /// Lights the sides of pieces that the scene's camera sees, those that are not lit yet.
-    pub(crate) fn light(&mut self, scene: &Scene, prepared: &PreparedScene, has_relief: bool) {
+    /// Lights the sides of pieces that the scene's camera sees, those that are not lit yet. `unlit`
+    /// gives the surface of a material.
+    pub(crate) fn light<'a>(
+        &mut self,
+        scene: &Scene,
+        unlit: impl Fn(usize) -> Option<&'a Prepared>,
+    ) {
         let mut is_seen = vec![[false; 2]; self.pieces.len()];
         for (m, mesh) in scene.meshes.iter().enumerate() {
             for triangle in 0..mesh.triangles.len() as u32 {
@@ -102,25 +128,26 @@ impl Baked {
             }
         }
         for (piece, is_seen) in self.pieces.iter_mut().zip(is_seen) {
-            let Some(unlit) = prepared.of_material(piece.material, has_relief) else { continue };
-            for side in 0..2 {
-                if !is_seen[side] || piece.sides[side].is_some() {
+            let Some(unlit) = unlit(piece.material) else { continue };
+            for (side, is_seen) in is_seen.into_iter().enumerate() {
+                if !is_seen || piece.sides[side].is_some() {
                     continue;
                 }
-                let TextureFrame { tangents, normal } = piece.frame;
-                let frame =
-                    TextureFrame { tangents, normal: if side == 0 { normal } else { -normal } };
-                piece.sides[side] = frame.beams(&scene.lights, &scene.sky).map(|beams| {
-                    let lit = baked(unlit.surface(), &beams, unlit.field().is_some());
-                    unlit.recolored(lit)
-                });
+                piece.sides[side] = piece.light(side, scene, unlit);
             }
         }
     }
 
     /// All lit surfaces.
     pub(crate) fn surfaces(&self) -> impl Iterator<Item = &Prepared> {
-        self.pieces.iter().flat_map(|piece| piece.sides.iter().flatten())
+        let sides = self.pieces.iter().flat_map(|piece| piece.sides.iter().flatten());
+        sides.flat_map(|side| std::iter::once(&side.lit).chain(&side.apart))
+    }
+
+    /// Whether meshes may throw shadows on a piece.
+    pub(crate) fn has_shadows(&self) -> bool {
+        let mut sides = self.pieces.iter().flat_map(|piece| piece.sides.iter().flatten());
+        sides.any(|side| !side.apart.is_empty())
     }
 
     /// The group of a triangle, by the index of its mesh and in it: 0 where it is not baked.
@@ -129,9 +156,10 @@ impl Baked {
     }
 
     /// The lit surface of a [group](Self::group).
-    pub(crate) fn of_group(&self, group: usize) -> Option<&Prepared> {
+    pub(crate) fn of_group(&self, group: usize) -> Option<(&Prepared, LitPiece<'_>)> {
         let index = group.checked_sub(1)?;
-        self.pieces[index / 2].sides[index % 2].as_ref()
+        let Side { normal, lit, apart } = self.pieces[index / 2].sides[index % 2].as_ref()?;
+        Some((lit, LitPiece { normal: *normal, apart }))
     }
 
     /// A triangle's piece, and which side the camera sees: 0 for the front.
@@ -145,6 +173,38 @@ impl Baked {
         let corner = mesh.positions[mesh.triangles[triangle as usize][0] as usize];
         let to_eye = scene.camera.eye - corner;
         Some((piece, usize::from(self.pieces[piece].frame.normal.dot(to_eye) < 0.0)))
+    }
+}
+
+impl Piece {
+    /// Its side, 0 the front, in the scene's light.
+    fn light(&self, side: usize, scene: &Scene, unlit: &Prepared) -> Option<Side> {
+        let normal = if side == 0 { self.frame.normal } else { -self.frame.normal };
+        let frame = TextureFrame { normal, ..self.frame };
+        let lit = |lights: &[Light], sky: &Sky| {
+            let beams = frame.beams(lights, sky)?;
+            Some(unlit.recolored(baked(unlit.surface(), &beams, false)))
+        };
+        let mut apart = Vec::new();
+        if self.may_be_shaded(side, scene) {
+            apart.push(lit(&[], &scene.sky)?);
+            for light in &scene.lights {
+                apart.push(lit(std::slice::from_ref(light), &Sky::default())?);
+            }
+        }
+        Some(Side { normal, lit: lit(&scene.lights, &scene.sky)?, apart })
+    }
+
+    /// Whether a corner of any mesh lies before a part of that side.
+    fn may_be_shaded(&self, side: usize, scene: &Scene) -> bool {
+        let [least, most] = self.range;
+        let rounding = SAME * (least.abs() + most.abs() + most - least);
+        let mut corners = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
+        let along = |corner: &Vec3| self.frame.normal.dot(*corner);
+        corners.any(|corner| match side {
+            0 => along(corner) > least + rounding,
+            _ => along(corner) < most - rounding,
+        })
     }
 }
 

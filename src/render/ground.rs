@@ -13,13 +13,23 @@ use glam::Vec3;
 #[derive(Clone, Copy)]
 pub(crate) struct Ground<'a> {
     pub(crate) material: &'a Material,
-    /// What is filtered, whose colours are lit already where [`Self::is_baked`].
+    /// What is filtered, whose colours are lit already where they are [baked](Self::baked).
     pub(crate) prepared: &'a Prepared,
     /// The same before light.
     pub(crate) unlit: &'a Prepared,
     /// Whether there is light.
     pub(crate) is_lit: bool,
-    pub(crate) is_baked: bool,
+    /// Where its light is baked.
+    pub(crate) baked: Option<LitPiece<'a>>,
+}
+
+/// A side of a flat piece whose light is baked.
+#[derive(Clone, Copy)]
+pub(crate) struct LitPiece<'a> {
+    /// Unit normal on that side.
+    pub(crate) normal: Vec3,
+    /// Under the sky alone, and under each sun alone; nothing where no mesh can hide a sun from it.
+    pub(crate) apart: &'a [Prepared],
 }
 
 impl Ground<'_> {
@@ -41,7 +51,7 @@ impl Ground<'_> {
 
     /// Whether lights are evaluated place by place.
     pub(crate) fn asks_for_lights(&self) -> bool {
-        self.is_lit && !self.is_baked
+        self.is_lit && self.baked.is_none()
     }
 
     /// The colour of a surface's texel as the material shows it.

@@ -13,6 +13,7 @@ mod ground;
 mod prepared;
 mod reflections;
 mod shade;
+mod shadows;
 
 pub(crate) use prepared::PreparedScene;
 pub(crate) use shade::{ShadeScratch, Shader};

@@ -28,7 +28,7 @@ pub(crate) struct PreparedScene {
     baked: Option<(bool, Baked)>,
     /// What lit frames ask for, made when the first of them does.
     reflectance: OnceLock<Reflectance>,
-    /// What the truth's light asks for.
+    /// What the truth's light and shadows ask for.
     occluders: OnceLock<Occluders>,
 }
 
@@ -87,7 +87,10 @@ impl PreparedScene {
         if is_lit && !is_exact {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
-            baked.light(scene, self, settings.parallax);
+            baked.light(scene, |material| self.of_material(material, settings.parallax));
+            if baked.has_shadows() {
+                self.occluders(scene);
+            }
             self.baked = Some((settings.parallax, baked));
         } else {
             self.baked = None;
@@ -127,15 +130,11 @@ impl PreparedScene {
     ) -> Option<Ground<'a>> {
         let baked = self.baked.as_ref().and_then(|(_, baked)| baked.of_group(group));
         let unlit = self.of_material(material, settings.parallax)?;
+        let (prepared, baked) =
+            baked.map_or((unlit, None), |(prepared, baked)| (prepared, Some(baked)));
         let is_lit = settings.lighting == Lighting::Lit;
         let material = &scene.materials[material];
-        Some(Ground {
-            material,
-            prepared: baked.unwrap_or(unlit),
-            unlit,
-            is_lit,
-            is_baked: baked.is_some(),
-        })
+        Some(Ground { material, prepared, unlit, is_lit, baked })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

@@ -28,9 +28,9 @@ type Colors = Vec<[PixelLanes; 3]>;
 
 /// Shades quads of a frame.
 pub(crate) struct Shader<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     settings: &'a Settings,
-    prepared: &'a PreparedScene,
+    pub(super) prepared: &'a PreparedScene,
     pub(crate) traits: Traits,
     /// What lights each sample by itself, where that is asked for.
     exact: Option<ExactLight<'a>>,
@@ -86,18 +86,28 @@ impl<'a> Shader<'a> {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
         let start = colors.len();
-        if let Some(samples) = &self.traits.samples {
-            colors.extend(
-                block.pairs().map(|pair| self.sampled(&ground, &pair, samples, &mut scratch)),
-            );
-        } else {
-            for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
-                let end = block.num_pairs().min(first + PAIRS_AT_ONCE);
-                self.filtered(&ground, (block, first..end), &mut scratch, colors);
-            }
-        }
-        if ground.is_baked {
+        self.textured(&ground, block, &mut scratch, colors);
+        if let Some(lit) = ground.baked {
+            self.shadow(&ground, &lit, block, &mut scratch, &mut colors[start..]);
             self.reflect(&ground, block, &mut scratch, &mut colors[start..]);
+        }
+    }
+
+    /// Pixels of a material with a texture.
+    pub(super) fn textured(
+        &self,
+        ground: &Ground,
+        block: &QuadBlock,
+        scratch: &mut ShadeScratch,
+        colors: &mut Colors,
+    ) {
+        if let Some(samples) = &self.traits.samples {
+            return colors
+                .extend(block.pairs().map(|pair| self.sampled(ground, &pair, samples, scratch)));
+        }
+        for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
+            let end = block.num_pairs().min(first + PAIRS_AT_ONCE);
+            self.filtered(ground, (block, first..end), scratch, colors);
         }
     }
 

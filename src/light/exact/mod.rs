@@ -18,9 +18,11 @@
 //! the diffuse layer is left with what a dielectric does not reflect, `1 - w`. So a surface of albedo
 //! 1 under a sky of 1 that nothing hides is 1 at every sample.
 
+mod between;
 mod occluders;
 mod sequence;
 
+pub use between::Receiver;
 pub use occluders::{LightRay, Occluders};
 pub use sequence::Sequence;
 

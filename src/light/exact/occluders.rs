@@ -83,6 +83,27 @@ impl Occluders {
         self.split(first + num / 2, end);
     }
 
+    /// Shows the triangles of all boxes that are wanted, by their least and greatest corners.
+    pub(super) fn visit(
+        &self,
+        is_wanted: impl Fn(Vec3, Vec3) -> bool,
+        mut show: impl FnMut(&[Vec3; 3]),
+    ) {
+        let mut left = Vec::from_iter((!self.nodes.is_empty()).then_some(0));
+        while let Some(index) = left.pop() {
+            let node = &self.nodes[index as usize];
+            if !is_wanted(node.min, node.max) {
+                continue;
+            }
+            if node.num == 0 {
+                left.extend([node.at, index + 1]);
+            } else {
+                let first = node.at as usize;
+                self.triangles[first..first + node.num as usize].iter().for_each(&mut show);
+            }
+        }
+    }
+
     /// Whether a triangle lies between a point and its light.
     pub fn hide(&self, ray: &LightRay) -> bool {
         // Along an axis that the ray does not move along, it is within a slab or never.

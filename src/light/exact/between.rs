@@ -1,0 +1,80 @@
+//! Which triangles may come between a piece of a surface and a sun.
+
+use super::occluders::Occluders;
+use crate::light::Disc;
+use glam::Vec3;
+
+/// Least height above the polygon's plane, as a share of the distance, that counts as above: what
+/// rounding makes of triangles that lie in it.
+const ROUNDING: f32 = 1e-5;
+
+/// A piece of a flat surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    /// The middle of a box around it.
+    pub middle: Vec3,
+    /// Half the box's sides.
+    half: Vec3,
+    /// The polygon's unit normal on the side that is lit.
+    normal: Vec3,
+    /// How far the polygon is above the middle.
+    top: f32,
+}
+
+impl Receiver {
+    /// Of points of a relief, whose polygon has a unit normal and holds a point; `None` without
+    /// points.
+    pub fn new(points: impl Iterator<Item = Vec3>, normal: Vec3, polygon: Vec3) -> Option<Self> {
+        let (min, max) = points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), point| {
+            (min.min(point), max.max(point))
+        });
+        let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        let top = normal.dot(polygon - middle);
+        middle.is_finite().then_some(Self { middle, half, normal, top })
+    }
+
+    /// Whether something in a box, by its middle and half its sides from the receiver's middle, may
+    /// hide a part of a disc from a part of the receiver: a ray from the one to the other's middle
+    /// passes a box that is larger by both.
+    fn may_be_hidden_by(&self, disc: &Disc, middle: Vec3, half: Vec3) -> bool {
+        let distance = middle.length() + half.length();
+        let height = self.normal.dot(middle) + self.normal.abs().dot(half);
+        if height <= self.top + ROUNDING * distance {
+            return false;
+        }
+        let half = half + self.half + distance * (disc.radius + ROUNDING);
+        // Along an axis that the ray does not move along, it is within a slab or never.
+        let inverse = disc.to_middle.to_array().map(|d| if d == 0.0 { 1e30 } else { 1.0 / d });
+        let inverse = Vec3::from(inverse);
+        let [a, b] = [(middle - half) * inverse, (middle + half) * inverse];
+        let (near, far) = (a.min(b).max_element(), a.max(b).min_element());
+        near.max(0.0) <= far
+    }
+}
+
+impl Occluders {
+    /// The triangles that may hide a part of a disc from a part of a receiver, from its middle.
+    pub fn between(&self, receiver: &Receiver, disc: &Disc) -> Vec<[Vec3; 3]> {
+        let mut found = Vec::new();
+        self.visit(
+            |min, max| {
+                let middle = (min + max) * 0.5 - receiver.middle;
+                receiver.may_be_hidden_by(disc, middle, (max - min) * 0.5)
+            },
+            |triangle| {
+                let [a, b, c] = triangle.map(|corner| corner - receiver.middle);
+                let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+                let height = [a, b, c].map(|corner| receiver.normal.dot(corner));
+                let height = height.into_iter().fold(f32::MIN, f32::max);
+                let distance = a.length().max(b.length()).max(c.length());
+                // Of its box a slanted triangle fills little, so its own height counts.
+                if height > receiver.top + ROUNDING * distance
+                    && receiver.may_be_hidden_by(disc, (min + max) * 0.5, (max - min) * 0.5)
+                {
+                    found.push([a, b, c]);
+                }
+            },
+        );
+        found
+    }
+}
