@@ -3,7 +3,9 @@
 mod common;
 
 use basrelief::texture::{ColorImage, Surface, SurfaceMaps, srgb_from_linear};
-use basrelief::{Filter, Frame, Light, Lighting, Rays, Scene, Settings, Sky, render};
+use basrelief::{
+    Filter, Frame, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky, render,
+};
 use common::{cobbles, floor_scene};
 use glam::Vec3;
 
@@ -39,6 +41,15 @@ fn baked_filters() -> impl Iterator<Item = Filter> {
 /// The colours of the pixels that show the floor.
 fn seen(frame: &Frame) -> impl Iterator<Item = [f32; 3]> {
     frame.pixels.iter().filter(|pixel| pixel[3] == 1.0).map(|[r, g, b, _]| [*r, *g, *b])
+}
+
+/// How near two frames are where they show a surface, as they are encoded.
+fn decibels(a: &Frame, b: &Frame) -> f32 {
+    let squares = seen(a).zip(seen(b)).flat_map(|(a, b)| {
+        [0, 1, 2].map(|c| (srgb_from_linear(a[c]) - srgb_from_linear(b[c])).powi(2))
+    });
+    let (sum, num) = squares.fold((0.0, 0.0), |(sum, num), square| (sum + square, num + 1.0));
+    -10.0 * (sum / num as f32).log10()
 }
 
 fn sun(to_light: Vec3, intensity: Vec3) -> Light {
@@ -117,11 +128,29 @@ fn baked_light_is_the_truths() {
         let scene = floor(cobbles(128, 4), lights, sky);
         let [baked, truth] = [Filter::default(), Filter::Truth(Rays { samples: 64 })]
             .map(|filter| draw(&scene, filter));
-        let squares = seen(&baked).zip(seen(&truth)).flat_map(|(a, b)| {
-            [0, 1, 2].map(|c| (srgb_from_linear(a[c]) - srgb_from_linear(b[c])).powi(2))
-        });
-        let (sum, num) = squares.fold((0.0, 0.0), |(sum, num), square| (sum + square, num + 1.0));
-        let decibels = -10.0 * (sum / num as f32).log10();
+        let decibels = decibels(&baked, &truth);
         assert!(decibels > 40.0, "{decibels} dB under {} suns", lights.len());
     }
+}
+
+#[test]
+fn meshes_throw_the_truths_shadows_on_flat_pieces() {
+    let lights = [
+        sun(Vec3::new(0.3, 1.0, -0.4), Vec3::splat(0.6)),
+        Light::Sun { to_light: Vec3::new(-0.5, 0.8, 0.0), intensity: Vec3::X, angular_size: 6.0 },
+    ];
+    // No sky: of that the plate hides a part in the truth alone.
+    let mut scene = floor(cobbles(128, 4), &lights, Vec3::ZERO);
+    let lit = draw(&scene, Filter::default());
+    // A plate over the floor, edge on to the eye, so that it hides little of the picture.
+    let corners = [[-1.5, 3.5], [1.5, 3.5], [1.5, 1.5], [-1.5, 1.5]];
+    let plate = corners.map(|[x, z]| Vec3::new(x, 1.6, z)).to_vec();
+    let faces = vec![[0, 1, 2], [0, 2, 3]];
+    scene.materials.push(Material::default());
+    scene.meshes.push(Mesh { material: 1, ..Mesh::new(plate, vec![], vec![], faces) });
+    let shaded = draw(&scene, Filter::default());
+    let truth = draw(&scene, Filter::Truth(Rays { samples: 64 }));
+    assert!(decibels(&lit, &truth) < 25.0, "the plate shades a part of the picture");
+    let found = decibels(&shaded, &truth);
+    assert!(found > 33.0, "{found} dB");
 }

@@ -139,21 +139,17 @@ fn cases() -> Vec<Case> {
     for (name, visible) in visible_cases(visible) {
         add(name, Wrap::Repeat, small(Filter::Visible(visible)));
     }
-    let culled = Settings { cull_back_faces: true, msaa: 8, ..small(Filter::Visible(visible)) };
-    add("culled, msaa 8", Wrap::Repeat, culled);
+    let visible = small(Filter::Visible(visible));
+    add("culled, msaa 8", Wrap::Repeat, Settings { cull_back_faces: true, msaa: 8, ..visible });
     add("4 lines", Wrap::Repeat, small(Filter::Horizon(Horizon { lines: 4, ..horizon })));
-    let near = Filter::Horizon(Horizon { lines: 64, far_field: false, ..horizon });
-    add("64 lines, near field", Wrap::Repeat, small(near));
-    let default = Settings { width: 45, height: 37, ..Settings::default() };
+    let near = Horizon { lines: 64, far_field: false, ..horizon };
+    add("64 lines, near field", Wrap::Repeat, small(Filter::Horizon(near)));
+    let default = Settings { width: 45, height: 37, ..Default::default() };
     add("default", Wrap::Repeat, default.clone());
     add("default, lit", Wrap::Repeat, Settings { lighting: Lighting::Lit, ..default });
     // Only maps of more than 128 x 128 texels have tables of what is seen from afar.
-    cases.push((
-        "far field".into(),
-        Wrap::Repeat,
-        200,
-        small(Filter::Horizon(Horizon { far_field_mib: 1, ..horizon })),
-    ));
+    let far = small(Filter::Horizon(Horizon { far_field_mib: 1, ..horizon }));
+    cases.push(("far field".into(), Wrap::Repeat, 200, far));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, small(Filter::Horizon(horizon))));
     cases.extend(baked_cases());
     // Texels a side that are no power of two wrap by a division.

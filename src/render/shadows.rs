@@ -26,8 +26,9 @@ use glam::Vec3;
 /// Rays of a pixel to each sun; a square number.
 const RAYS: usize = 16;
 
-/// Every how manieth of them goes first.
-const FIRST: usize = 5;
+/// Those of them that go first: to the four points nearest to the disc's edge, from places all over
+/// the pixel.
+const FIRST: [usize; 4] = [2, 4, 9, 11];
 
 /// Three coordinates of eight pixels.
 type Vectors = [PixelLanes; 3];
@@ -109,6 +110,9 @@ struct Places {
     polygon: Vectors,
     /// How far that point moves from a column of pixels to the next, and a row.
     steps: [Vectors; 2],
+    /// How far above a ray's start a triangle hides nothing that it passes from behind: its own
+    /// polygon, or one that stands on it. See [`LightRay::reach`](crate::light::exact::LightRay).
+    reach: PixelLanes,
 }
 
 fn places(pair: &QuadPair, ground: &Ground, lit: &LitPiece) -> Option<Places> {
@@ -124,7 +128,12 @@ fn places(pair: &QuadPair, ground: &Ground, lit: &LitPiece) -> Option<Places> {
     };
     let steps = [step(1), step(2)];
     let Some(field) = ground.prepared.field() else {
-        return Some(Places { relief: position, polygon: position, steps });
+        return Some(Places {
+            relief: position,
+            polygon: position,
+            steps,
+            reach: PixelLanes::ZERO,
+        });
     };
     let along = displacement(&pair.view(), field.relief_depth);
     let depth = march(field, &pair.uv, &along);
@@ -136,7 +145,8 @@ fn places(pair: &QuadPair, ground: &Ground, lit: &LitPiece) -> Option<Places> {
         let moved = (tangent_u[i] * along[0] + tangent_v[i] * along[1]) * depth;
         position[i] + moved - down * lit.normal[i]
     });
-    Some(Places { relief, polygon: position, steps })
+    let reach = repeat * (2.0 * field.relief_depth);
+    Some(Places { relief, polygon: position, steps, reach })
 }
 
 impl Hidden {
@@ -146,17 +156,15 @@ impl Hidden {
             return PixelLanes::ZERO;
         }
         let from = [0, 1, 2].map(|i| places.relief[i] - middle[i]);
-        let first = (0..RAYS).step_by(FIRST);
-        let num_first = first.clone().count() as f32;
-        let count =
-            first.fold(PixelLanes::ZERO, |sum, ray| sum + self.is_hidden(&from, places, ray));
-        let is_edge = count.simd_gt(PixelLanes::ZERO) & count.simd_lt(PixelLanes::splat(num_first));
+        let hidden = |sum, ray| sum + self.is_hidden(&from, places, ray);
+        let count = FIRST.into_iter().fold(PixelLanes::ZERO, hidden);
+        let most = FIRST.len() as f32;
+        let is_edge = count.simd_gt(PixelLanes::ZERO) & count.simd_lt(PixelLanes::splat(most));
         if !is_edge.any() {
-            return count * (1.0 / num_first);
+            return count * (1.0 / most);
         }
-        let others = (0..RAYS).filter(|ray| ray % FIRST != 0);
-        let all = others.fold(count, |sum, ray| sum + self.is_hidden(&from, places, ray));
-        is_edge.select(all * (1.0 / RAYS as f32), count * (1.0 / num_first))
+        let all = (0..RAYS).filter(|ray| !FIRST.contains(ray)).fold(count, hidden);
+        is_edge.select(all * (1.0 / RAYS as f32), count * (1.0 / most))
     }
 
     /// 1 where a triangle hides a point of the sun, else 0.
@@ -167,17 +175,16 @@ impl Hidden {
         let [x, y] = [ray % SIDE, ray / SIDE].map(|i| (i as f32 + 0.5) / SIDE as f32 - 0.5);
         let direction = self.directions[ray * 7 % RAYS];
         let from = [0, 1, 2].map(|i| from[i] + places.steps[0][i] * x + places.steps[1][i] * y);
-        let hits = self
-            .triangles
-            .iter()
-            .fold(PixelLanes::ZERO, |hits, triangle| hits | passes(&from, direction, triangle));
+        let hits = self.triangles.iter().fold(PixelLanes::ZERO, |hits, triangle| {
+            hits | passes(&from, direction, triangle, places.reach)
+        });
         hits.select(PixelLanes::ONE, PixelLanes::ZERO)
     }
 }
 
 /// Where rays in one direction pass a triangle, by the signs of three volumes.
 #[inline(always)]
-fn passes(from: &Vectors, direction: Vec3, triangle: &[Vec3; 3]) -> PixelLanes {
+fn passes(from: &Vectors, direction: Vec3, triangle: &[Vec3; 3], reach: PixelLanes) -> PixelLanes {
     let corners = triangle.map(|corner| [0, 1, 2].map(|i| PixelLanes::splat(corner[i]) - from[i]));
     let side = |a: usize, b: usize| {
         let [x, y, z] = cross(&corners[a], &corners[b]);
@@ -193,7 +200,12 @@ fn passes(from: &Vectors, direction: Vec3, triangle: &[Vec3; 3]) -> PixelLanes {
     let [x, y, z] = corners[0];
     let distance = x * normal.x + y * normal.y + z * normal.z;
     let is_ahead = (distance * towards).simd_gt(zero);
-    (is_left | is_right) & is_ahead
+    let hides = (is_left | is_right) & is_ahead;
+    if towards <= 0.0 {
+        return hides;
+    }
+    // From behind, which hides nothing near by.
+    hides & distance.abs().simd_gt(reach * normal.length())
 }
 
 fn cross(a: &Vectors, b: &Vectors) -> Vectors {
