@@ -9,7 +9,8 @@ mod common;
 use basrelief::inspect::{self, Measured, View, measure};
 use basrelief::texture::{HeightImage, Surface, SurfaceMaps};
 use basrelief::{
-    Ewa, Filter, Frame, Horizon, Lighting, Rays, Renderer, Scene, Settings, Sky, Stats, Visible,
+    Ewa, Filter, Frame, Horizon, Light, Lighting, Rays, Renderer, Scene, Settings, Sky, Stats,
+    Visible,
 };
 use common::{cobbles, floor_scene};
 use glam::Vec3;
@@ -48,10 +49,11 @@ fn mounds() -> Surface {
     Surface::new(maps).expect("valid maps")
 }
 
-/// A floor to the horizon under white light from everywhere: of that a surface reflects a share
-/// `E`, and leaves `1 - E` to its colour.
+/// A floor to the horizon under white light from everywhere, which leaves colours as they are. With
+/// a point light, if a dark one, light is not baked, which would mix the colours of levels anew.
 fn floor(surface: Surface) -> Scene {
-    Scene { sky: Sky::Color(Vec3::ONE), ..floor_scene(surface, 0.15) }
+    let lights = vec![Light::Point { position: Vec3::Y, intensity: Vec3::ZERO }];
+    Scene { sky: Sky::Color(Vec3::ONE), lights, ..floor_scene(surface, 0.15) }
 }
 
 fn settings(filter: Filter) -> Settings {
@@ -117,18 +119,10 @@ impl Told {
     }
 }
 
-/// The greatest difference of a pixel's channel from the blend of two colours, where it is lit with
-/// the reflection that its darkest channel shows.
-fn error(pixel: &[f32; 4], [from, to]: [[f32; 3]; 2], share: f32, lighting: Lighting) -> f32 {
-    let color = [0, 1, 2].map(|c| from[c] + (to[c] - from[c]) * share);
-    let darkest = (0..3).min_by(|&a, &b| color[a].total_cmp(&color[b])).unwrap_or(0);
-    let reflected = match lighting {
-        Lighting::Lit if color[darkest] < 0.999 => {
-            ((pixel[darkest] - color[darkest]) / (1.0 - color[darkest])).clamp(0.0, 0.1)
-        }
-        _ => 0.0,
-    };
-    (0..3).map(|c| (pixel[c] - color[c] - reflected * (1.0 - color[c])).abs()).fold(0.0, f32::max)
+/// The greatest difference of a pixel's channel from the blend of two colours.
+fn error(pixel: &[f32; 4], [from, to]: [[f32; 3]; 2], share: f32) -> f32 {
+    let of_channel = |c: usize| (pixel[c] - (from[c] + (to[c] - from[c]) * share)).abs();
+    (0..3).map(of_channel).fold(0.0, f32::max)
 }
 
 /// Holds every pixel of a frame against the level and blend that the inspector names.
@@ -150,10 +144,10 @@ fn check(surface: &Surface, settings: &Settings) -> Told {
         if far_share > 0.0 {
             told.num_tables += 1;
             for (worst, table) in table_errors.iter_mut().zip(&COLORS) {
-                *worst = worst.max(error(pixel, [levels[0], *table], far_share, settings.lighting));
+                *worst = worst.max(error(pixel, [levels[0], *table], far_share));
             }
         } else {
-            let error = error(pixel, levels, blend, settings.lighting);
+            let error = error(pixel, levels, blend);
             let what = format!("pixel {i}, level {level} by {:?}", settings.filter);
             assert!(error < ROUNDING, "{what}: {pixel:?}, {levels:?} expected, {error} apart");
             told.levels.push(level);

@@ -17,6 +17,8 @@ pub struct Prepared {
     /// The tables, if the surface has any, for so many MiB.
     far: Arc<Mutex<Option<Tables>>>,
     has_far_field: bool,
+    /// Whether its colours hold light and shadow.
+    is_lit: bool,
 }
 
 /// Tables, if a surface has any, for so many MiB.
@@ -41,7 +43,7 @@ impl Prepared {
                 loss: LevelLoss::new(&surface),
             })
         });
-        Self { surface, relief, far: Arc::default(), has_far_field: true }
+        Self { surface, relief, far: Arc::default(), has_far_field: true, is_lit: false }
     }
 
     /// The same surface drawn flat.
@@ -49,9 +51,9 @@ impl Prepared {
         Self { relief: None, ..self.clone() }
     }
 
-    /// The same relief in the colours of another surface: what is made of heights is shared.
+    /// The same relief in the lit colours of another surface: what is made of heights is shared.
     pub(crate) fn recolored(&self, surface: Surface) -> Self {
-        Self { surface: Arc::new(surface), far: Arc::default(), ..self.clone() }
+        Self { surface: Arc::new(surface), far: Arc::default(), is_lit: true, ..self.clone() }
     }
 
     /// The same surface without tables for distant footprints.
@@ -76,6 +78,11 @@ impl Prepared {
         let displacement = displacement.map(|lanes| lanes.as_array()[0]);
         let hit = [0, 1].map(|i| base[i] + displacement[i] * depth);
         Footprint { hit, ..Footprint::new(base, dx, dy, displacement) }
+    }
+
+    /// Whether its colours hold light and shadow.
+    pub(super) fn is_lit(&self) -> bool {
+        self.is_lit
     }
 
     /// The texels.

@@ -165,7 +165,8 @@ fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
 /// it matters only whether there is a highlight at all: how strong it is follows from the material.
 fn roughness_of_highlight(from: &MtlMaterial) -> Option<f32> {
     let is_seen = from.specular.is_some_and(|specular| specular.iter().any(|c| *c > 0.0));
-    let exponent = from.shininess.filter(|_| is_seen)?.clamp(0.0, 1e6);
+    // Exporters write `Ns 0` for a surface without a highlight.
+    let exponent = from.shininess.filter(|exponent| is_seen && *exponent > 0.0)?.min(1e6);
     Some((2.0 / (exponent + 2.0)).sqrt().sqrt())
 }
 

