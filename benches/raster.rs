@@ -72,7 +72,11 @@ fn draw(criterion: &mut Criterion) {
                 b.iter(|| {
                     rasterizer.draw(
                         black_box(&geometry),
-                        Drawn { scene: &scene, settings: &settings, group: &|_| 0 },
+                        Drawn {
+                            scene: &scene,
+                            settings: &settings,
+                            group: &|[mesh, _]| scene.meshes[mesh as usize].material as u32,
+                        },
                         &flat,
                         &|| 0.0,
                         &mut frame,

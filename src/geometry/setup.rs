@@ -33,6 +33,7 @@ impl<'a> Setup<'a> {
     }
 
     /// Appends the screen triangles of the triangles `range` of a mesh.
+    #[inline(never)] // By itself it is optimised alike whatever is compiled around it.
     pub(super) fn set_up(
         &self,
         mesh: usize,

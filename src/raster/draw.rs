@@ -74,7 +74,8 @@ pub fn draw(
     let shade = |block: &QuadBlock, colors: &mut Vec<_>| {
         colors.extend(block.pairs().map(|pair| shade(&pair)));
     };
-    let drawn = Drawn { scene, settings, group: &|_| 0 };
+    let group = |[mesh, _]: [u32; 2]| scene.meshes[mesh as usize].material as u32;
+    let drawn = Drawn { scene, settings, group: &group };
     Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, frame)
 }
 
@@ -85,8 +86,8 @@ pub struct Drawn<'a> {
     pub scene: &'a Scene,
     /// The settings.
     pub settings: &'a Settings,
-    /// A number for each triangle, by the index of its mesh and in it: quads of one material and
-    /// one number are shaded together.
+    /// A number for each triangle, by the index of its mesh and in it: quads of one number, which
+    /// must be of one material, are shaded together.
     pub group: &'a (dyn Fn([u32; 2]) -> u32 + Sync),
 }
 
@@ -251,7 +252,7 @@ impl Painter<'_> {
         // From here on a quad names its triangle by the slot of its planes.
         for quad in quads.iter_mut() {
             quad.triangle = slots[quad.triangle as usize];
-            quad.ground = grounds[quad.triangle as usize];
+            quad.group = grounds[quad.triangle as usize][1];
         }
         // Never shrunk, so that the boxes of lit planes are there for the next tile.
         if planes.len() < triangles.len() {
@@ -269,7 +270,7 @@ impl Painter<'_> {
         scratch: &mut Scratch,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
     ) -> (u64, f64) {
-        let Scratch { quads, planes, colors, canvas, .. } = scratch;
+        let Scratch { quads, planes, grounds, colors, canvas, .. } = scratch;
         // One over a power of two: shares of a pixel add up to 1 without rounding.
         let share = 1.0 / self.settings.msaa as f32;
         let block_of = |quad: &SeenQuad| quad.origin.map(|c| usize::from(c) / SHADED_BLOCK);
@@ -277,11 +278,12 @@ impl Painter<'_> {
         // The list goes block by block, so each block is one run of it.
         for block in quads.chunk_by_mut(|a, b| block_of(a) == block_of(b)) {
             // The stable sort keeps the order of places and triangles.
-            block.sort_by_key(|quad| quad.ground);
-            for quads in block.chunk_by(|a, b| a.ground == b.ground) {
+            block.sort_by_key(|quad| quad.group);
+            for quads in block.chunk_by(|a, b| a.group == b.group) {
                 colors.clear();
                 let start = (self.clock)();
-                let [material, group] = quads[0].ground.map(|index| index as usize);
+                let [material, group] =
+                    grounds[quads[0].triangle as usize].map(|index| index as usize);
                 shade(&QuadBlock { material, group, tile: rect.min, quads, planes }, colors);
                 shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {

@@ -17,8 +17,8 @@ pub(super) struct SeenQuad {
     pub(super) origin: [u16; 2],
     /// How many samples of each pixel see the triangle, lane `2 * dy + dx`.
     pub(super) coverage: [u8; 4],
-    /// The triangle's material and group, when they are known.
-    pub(super) ground: [u32; 2],
+    /// The triangle's group, when it is known.
+    pub(super) group: u32,
 }
 
 /// Rows of a part of a block: each is as wide as a lane vector, and neighbours in the list are
@@ -50,7 +50,7 @@ pub(super) fn gather<const S: usize>(buffer: &VisibilityBuffer, seen: &mut Vec<S
                     triangle: first,
                     origin: origin(quad),
                     coverage: [S as u8; 4],
-                    ground: [0; 2],
+                    group: 0,
                 };
                 seen.extend((0..4).map(whole));
             }
@@ -96,7 +96,7 @@ fn gather_quad<const S: usize>(
                 at -= 1;
             }
             if at == start || seen[at - 1].triangle != triangle {
-                seen.insert(at, SeenQuad { triangle, origin, coverage: [0; 4], ground: [0; 2] });
+                seen.insert(at, SeenQuad { triangle, origin, coverage: [0; 4], group: 0 });
                 at += 1;
             }
             seen[at - 1].coverage[lane] += 1;

@@ -150,15 +150,14 @@ impl Baked {
         sides.any(|side| !side.apart.is_empty())
     }
 
-    /// The group of a triangle, by the index of its mesh and in it: 0 where it is not baked.
-    pub(crate) fn group(&self, scene: &Scene, triangle: [u32; 2]) -> u32 {
-        self.seen(scene, triangle).map_or(0, |(piece, side)| (2 * piece + side) as u32 + 1)
+    /// The group of a triangle, by the index of its mesh and in it; `None` where it is not baked.
+    pub(crate) fn group(&self, scene: &Scene, triangle: [u32; 2]) -> Option<u32> {
+        self.seen(scene, triangle).map(|(piece, side)| (2 * piece + side) as u32)
     }
 
     /// The lit surface of a [group](Self::group).
     pub(crate) fn of_group(&self, group: usize) -> Option<(&Prepared, LitPiece<'_>)> {
-        let index = group.checked_sub(1)?;
-        let Side { normal, lit, apart } = self.pieces[index / 2].sides[index % 2].as_ref()?;
+        let Side { normal, lit, apart } = self.pieces[group / 2].sides[group % 2].as_ref()?;
         Some((lit, LitPiece { normal: *normal, apart }))
     }
 

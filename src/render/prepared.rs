@@ -118,7 +118,12 @@ impl PreparedScene {
 
     /// The group in which a triangle is shaded, by the index of its mesh and in it.
     pub(crate) fn group(&self, scene: &Scene, triangle: [u32; 2]) -> u32 {
-        self.baked.as_ref().map_or(0, |(_, baked)| baked.group(scene, triangle))
+        let baked = self.baked.as_ref().and_then(|(_, baked)| baked.group(scene, triangle));
+        // After the groups of materials.
+        match baked {
+            Some(group) => self.of_material.len() as u32 + group,
+            None => scene.meshes[triangle[0] as usize].material as u32,
+        }
     }
 
     /// What a block lies on; `None` for a material without a surface.
@@ -128,7 +133,9 @@ impl PreparedScene {
         settings: &Settings,
         [material, group]: [usize; 2],
     ) -> Option<Ground<'a>> {
-        let baked = self.baked.as_ref().and_then(|(_, baked)| baked.of_group(group));
+        let baked = group
+            .checked_sub(self.of_material.len())
+            .and_then(|group| self.baked.as_ref()?.1.of_group(group));
         let unlit = self.of_material(material, settings.parallax)?;
         let (prepared, baked) =
             baked.map_or((unlit, None), |(prepared, baked)| (prepared, Some(baked)));
