@@ -71,5 +71,5 @@ pub use crate::footprint::{Footprint, Footprints};
 pub use batch::{Batch, Filtered, LevelChoice, Work};
 pub use dispatch::Scratch;
 pub use prepared::Prepared;
-pub use samples::SampleOffsets;
+pub use samples::{SampleOffsets, Samples};
 pub use traits::{Reads, Traits};

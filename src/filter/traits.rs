@@ -1,17 +1,16 @@
 //! What a frame must know of a filter beside its colours and levels, on one page.
 
-use super::samples::SampleOffsets;
-use super::{parallax, truth};
+use super::samples::Samples;
 use crate::footprint::FootprintRule;
 use crate::settings::{Derivatives, Ewa, Filter, Formulas, Horizon, Rays, Trilinear, Visible};
 
 /// What a frame must know of a filter.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Traits {
     /// How its footprints are made.
     pub rule: FootprintRule,
-    /// Where the rays of a pixel go; `None` for a filter that takes a footprint for a pixel.
-    pub samples: Option<SampleOffsets>,
+    /// The rays of a pixel; `None` for a filter that takes a footprint for a pixel.
+    pub samples: Option<Samples>,
     /// Whether lights are asked for each texel that is seen, so that colours hold their diffuse
     /// part already.
     pub asks_for_lights: bool,
@@ -62,15 +61,13 @@ impl Filter {
             },
             Self::Parallax(Rays { samples }) => Traits {
                 // One ray goes through the pixel's centre, as the footprint does.
-                samples: (samples > 1)
-                    .then(|| SampleOffsets::new(&parallax::offsets(samples), false)),
+                samples: (samples > 1).then_some(Samples { num: samples, is_exact: false }),
                 reads: Reads::Cells,
                 ..at_base()
             },
-            Self::Truth(Rays { samples }) => Traits {
-                samples: Some(SampleOffsets::new(&truth::offsets(samples), true)),
-                ..at_hit()
-            },
+            Self::Truth(Rays { samples }) => {
+                Traits { samples: Some(Samples { num: samples, is_exact: true }), ..at_hit() }
+            }
         }
     }
 }

@@ -80,7 +80,7 @@ impl PreparedScene {
             self.reflectance();
         }
         // The truth lights each of its samples.
-        let is_exact = settings.filter.traits().samples.is_some_and(|rays| rays.is_lit_apart);
+        let is_exact = settings.filter.traits().samples.is_some_and(|rays| rays.is_exact);
         if is_lit && is_exact {
             self.occluders(scene);
         }

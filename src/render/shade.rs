@@ -3,7 +3,7 @@
 use super::exact::Exact;
 use super::ground::{Ground, in_lanes, pixel_center, surface_point};
 use super::prepared::PreparedScene;
-use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Scratch, Traits, Work};
+use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Samples, Scratch, Traits, Work};
 use crate::footprint::{FootprintRule, Footprints};
 use crate::light::exact::ExactLight;
 use crate::light::{LocalLights, Reflected};
@@ -32,6 +32,8 @@ pub(crate) struct Shader<'a> {
     settings: &'a Settings,
     pub(super) prepared: &'a PreparedScene,
     pub(crate) traits: Traits,
+    /// Where rays go, where there are many a pixel.
+    samples: Option<SampleOffsets>,
     /// What lights each sample by itself, where that is asked for.
     exact: Option<ExactLight<'a>>,
     pool: &'a Pool<ShadeScratch>,
@@ -56,10 +58,11 @@ impl<'a> Shader<'a> {
     ) -> Self {
         let traits = settings.filter.traits();
         let is_exact = settings.lighting == Lighting::Lit
-            && traits.samples.as_ref().is_some_and(|samples| samples.is_lit_apart);
+            && traits.samples.is_some_and(|samples| samples.is_exact);
         let exact = is_exact.then(|| ExactLight { scene, occluders: prepared.occluders(scene) });
+        let samples = traits.samples.map(Samples::offsets);
         let num_texels = Default::default();
-        Self { scene, settings, prepared, traits, exact, pool, num_texels }
+        Self { scene, settings, prepared, traits, samples, exact, pool, num_texels }
     }
 
     /// What filtering took so far.
@@ -76,7 +79,7 @@ impl<'a> Shader<'a> {
         let index = [block.material, block.group];
         let ground = self.prepared.ground(self.scene, self.settings, index);
         let mut scratch = self.pool.take();
-        if let (Some(samples), Some(light)) = (&self.traits.samples, &self.exact) {
+        if let (Some(samples), Some(light)) = (&self.samples, &self.exact) {
             let (filter, is_traced) = (&self.settings.filter, self.traits.rule.is_traced);
             let exact = Exact { light, samples, filter, is_traced, material, ground };
             return colors
@@ -101,7 +104,7 @@ impl<'a> Shader<'a> {
         scratch: &mut ShadeScratch,
         colors: &mut Colors,
     ) {
-        if let Some(samples) = &self.traits.samples {
+        if let Some(samples) = &self.samples {
             return colors
                 .extend(block.pairs().map(|pair| self.sampled(ground, &pair, samples, scratch)));
         }
