@@ -7,26 +7,18 @@
 //! coordinates and slope; colour is bilinear at the base level at the hit. Shares no code with the
 //! filters it judges, beyond texel access.
 
+use crate::light::spiral;
 use crate::texture::{Surface, Texel};
-
-/// Cosine and sine of the golden angle, `pi (3 - sqrt 5)`.
-const GOLDEN_TURN: [f64; 2] = [-0.737_368_878_078_319_8, 0.675_490_294_261_523_7];
 
 /// Offsets of `num` samples from the pixel's centre, in pixels.
 pub(super) fn offsets(num: u32) -> Vec<[f32; 2]> {
     // 1 - exp(-2), the part of the whole Gaussian that the disc holds.
     let edge = 0.864_664_716_763_387_3;
-    let mut turn = [1.0_f64, 0.0];
-    let mut offsets = Vec::with_capacity(num as usize);
-    for i in 0..num {
-        let share = (f64::from(i) + 0.5) / f64::from(num);
+    let offset = |([x, y], share): ([f64; 2], f64)| {
         let radius = (-0.5 * ln(1.0 - share * edge)).sqrt();
-        offsets.push([(radius * turn[0]) as f32, (radius * turn[1]) as f32]);
-        // Turned by products, since sines of the platform differ from machine to machine.
-        let ([c, s], [x, y]) = (GOLDEN_TURN, turn);
-        turn = [x * c - y * s, x * s + y * c];
-    }
-    offsets
+        [(radius * x) as f32, (radius * y) as f32]
+    };
+    spiral(num as usize).map(offset).collect()
 }
 
 /// The natural logarithm of a number from 0.1 to 1, by exact operations alone: the fourth root,

@@ -114,8 +114,9 @@ impl TextureFrame {
             let intensity = sky.radiance(to_light) * (1.0 / (SKY_DIRECTIONS as f32 * up));
             self.beam(to_light, intensity)
         };
-        let pair = |([cos, sin], share): ([f32; 2], f32)| {
-            [[cos, sin], [-cos, -sin]].map(|turn| beam(turn, share))
+        let pair = |(turn, share): ([f64; 2], f64)| {
+            let [cos, sin] = turn.map(|c| c as f32);
+            [[cos, sin], [-cos, -sin]].map(|turn| beam(turn, share as f32))
         };
         spiral(SKY_DIRECTIONS / 2).flat_map(pair).flatten().collect()
     }

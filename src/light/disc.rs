@@ -23,7 +23,8 @@ impl Disc {
     pub fn points(&self, num: usize) -> impl Iterator<Item = Vec3> + use<> {
         let Self { to_middle, radius } = *self;
         let [x, y] = <[Vec3; 2]>::from(to_middle.any_orthonormal_pair());
-        spiral(num).map(move |([cos, sin], share)| {
+        spiral(num).map(move |(turn, share)| {
+            let ([cos, sin], share) = (turn.map(|c| c as f32), share as f32);
             (to_middle + (x * cos + y * sin) * (share.sqrt() * radius)).normalize_or_zero()
         })
     }
@@ -31,7 +32,7 @@ impl Disc {
 
 /// Points of a disc (Vogel 1979), each with the same area: the direction from the middle, and the
 /// share of the disc that is nearer to it.
-pub(super) fn spiral(num: usize) -> impl Iterator<Item = ([f32; 2], f32)> {
+pub fn spiral(num: usize) -> impl Iterator<Item = ([f64; 2], f64)> {
     // Cosine and sine of the golden angle, pi (3 - sqrt 5): turned by products, since sines of the
     // platform differ from machine to machine.
     const TURN: [f64; 2] = [-0.737_368_878_078_319_8, 0.675_490_294_261_523_7];
@@ -39,6 +40,6 @@ pub(super) fn spiral(num: usize) -> impl Iterator<Item = ([f32; 2], f32)> {
     (0..num).map(move |i| {
         let [x, y] = turn;
         turn = [x * TURN[0] - y * TURN[1], x * TURN[1] + y * TURN[0]];
-        ([x as f32, y as f32], (i as f32 + 0.5) / num as f32)
+        ([x, y], (i as f64 + 0.5) / num as f64)
     })
 }

@@ -20,6 +20,6 @@ pub mod reflection;
 mod surface_point;
 
 pub use bake::{Beam, TextureFrame, baked};
-pub use disc::Disc;
+pub use disc::{Disc, spiral};
 pub use local::{LocalLights, Reflected};
 pub use surface_point::SurfacePoint;
