@@ -20,7 +20,7 @@ pub struct Batch<'a> {
 /// The means of eight pixels' texels, in the units that the surface stores; see [`Texel`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Filtered {
-    /// Linear RGB. Of a filter that [asks for lights](crate::filter::Traits::asks_for_lights), times what a
+    /// Linear RGB. Of a filter that [asks for lights](super::Traits::asks_for_lights), times what a
     /// white surface there would show of them.
     pub color: [PixelLanes; 3],
     /// Mean normals in the frame of the texture; only made under lights.

@@ -15,6 +15,7 @@
 //! suns and skies.
 
 use super::disc::{Disc, spiral};
+use super::surface_point::unit_axes;
 use crate::relief::{LitParts, MAX_SLOPE};
 use crate::scene::{Light, Sky};
 use crate::simd::TexelLanes;
@@ -54,11 +55,7 @@ pub struct Beam {
 impl TextureFrame {
     /// A direction as the axes see it, u and v of unit length: what normals are held against.
     fn local(&self, direction: Vec3) -> Vec3 {
-        let [u, v] = self.tangents.map(|t| {
-            let t = t - self.normal * t.dot(self.normal);
-            t.normalize_or_zero()
-        });
-        Vec3::new(u.dot(direction), v.dot(direction), self.normal.dot(direction))
+        Vec3::from(unit_axes(self.tangents, self.normal).map(|axis| axis.dot(direction)))
     }
 
     /// Light from a unit direction; `None` from behind the surface.
@@ -122,8 +119,8 @@ impl TextureFrame {
     }
 }
 
-/// The surface lit by beams, its normals kept where highlights will want them.
-pub fn baked(surface: &Surface, beams: &[Beam], keep_normals: bool) -> Surface {
+/// The surface lit by beams; it needs no normals any more.
+pub fn baked(surface: &Surface, beams: &[Beam]) -> Surface {
     let level = surface.base();
     let [width, height] = level.size();
     let mut sums = [Sums::new([width, height]), Sums::new([height, width])];
@@ -133,7 +130,7 @@ pub fn baked(surface: &Surface, beams: &[Beam], keep_normals: bool) -> Surface {
         sums[usize::from(lit.is_turned)].add(level, beam, &lit);
     }
     let [along_u, along_v] = &sums;
-    surface.with_colors(keep_normals, |x, y, albedo| {
+    surface.with_colors(|x, y, albedo| {
         std::array::from_fn(|c| albedo[c] * (along_u.at(x, y)[c] + along_v.at(y, x)[c]))
     })
 }

@@ -19,8 +19,13 @@ impl SurfacePoint {
     pub(super) fn axes(&self, eye: Vec3) -> [Vec3; 3] {
         let normal = self.normal.normalize_or(Vec3::Z);
         let normal = if normal.dot(eye - self.position) < 0.0 { -normal } else { normal };
-        // Take off what interpolated tangents have along the normal.
-        let [u, v] = self.tangents.map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
-        [u, v, normal]
+        unit_axes(self.tangents, normal)
     }
+}
+
+/// Axes of unit length along u, along v and a unit normal.
+pub(super) fn unit_axes(tangents: [Vec3; 2], normal: Vec3) -> [Vec3; 3] {
+    // Take off what interpolated tangents have along the normal.
+    let [u, v] = tangents.map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
+    [u, v, normal]
 }

@@ -3,8 +3,8 @@
 use super::gather::SeenQuad;
 use super::quad::{AttributePlanes, QuadPair};
 
-/// What a block of 16x16 pixels sees of one material and group: each triangle's quads, row by row of each 8x8
-/// pixels.
+/// What a block of 16x16 pixels sees of one material and group: each triangle's quads, row by row of
+/// each 8x8 pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadBlock<'a> {
     /// Index of the material.

@@ -182,7 +182,7 @@ impl Piece {
         let frame = TextureFrame { normal, ..self.frame };
         let lit = |lights: &[Light], sky: &Sky| {
             let beams = frame.beams(lights, sky)?;
-            Some(unlit.recolored(baked(unlit.surface(), &beams, false)))
+            Some(unlit.recolored(baked(unlit.surface(), &beams)))
         };
         let mut apart = Vec::new();
         if self.may_be_shaded(side, scene) {

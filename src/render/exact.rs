@@ -76,7 +76,7 @@ impl Exact<'_> {
         let [texels] = texels;
         self.sum(samples, rays.covered, |lane| {
             let (texel, ray) = (texels.lane(lane), rays.lane(lane));
-            let albedo = Vec3::from(texel.color) * ground.material.base_color * ground.scale();
+            let albedo = ground.color_of(ground.prepared.surface(), &texel);
             let (relief, normal) = (ground.prepared.field(), Vec3::from(texel.normal));
             Spot { relief, base: ray.base, place: ray.hit, albedo, normal }
         })

@@ -5,7 +5,7 @@ use super::ground::Ground;
 use crate::filter::Prepared;
 use crate::light::exact::Occluders;
 use crate::light::reflection::Reflectance;
-use crate::scene::Scene;
+use crate::scene::{Light, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::texture::Surface;
 use rayon::prelude::*;
@@ -84,7 +84,9 @@ impl PreparedScene {
         if is_lit && is_exact {
             self.occluders(scene);
         }
-        if is_lit && !is_exact {
+        // Where a point shines, no piece is lit alike all over.
+        let has_points = scene.lights.iter().any(|light| matches!(light, Light::Point { .. }));
+        if is_lit && !is_exact && !has_points {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
             baked.light(scene, |material| self.of_material(material, settings.parallax));

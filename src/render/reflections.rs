@@ -4,7 +4,7 @@
 //! levels around the hit, and of the base colour there: lights reach it unless the polygon faces
 //! away, over whatever relief and meshes are in between.
 
-use super::ground::{Ground, in_lanes, pixel_center};
+use super::ground::{Ground, in_lanes};
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
 use crate::filter::{Batch, Filtered};
 use crate::raster::QuadBlock;
@@ -46,11 +46,7 @@ impl Shader<'_> {
         let mips = Filter::Trilinear(Trilinear::default());
         self.footprints((ground.unlit, &mips.traits().rule), (block, pairs.clone()), footprints);
         lights.clear();
-        lights.extend(pairs.clone().flat_map(|index| {
-            let pair = block.pair(index);
-            pair.covered()
-                .filter_map(move |lane| self.lights_at(&pair, lane, pixel_center(&pair, lane)))
-        }));
+        self.list_lights((block, pairs.clone()), lights);
         filtered.resize(pairs.len(), Filtered::default());
         let batch = Batch { pixels: footprints, lights, is_alone: false };
         self.count(mips.colors(ground.unlit, &batch, filter, filtered));

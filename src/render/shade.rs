@@ -143,13 +143,8 @@ impl<'a> Shader<'a> {
         // Find where the pixels lie in the texture.
         let with = (ground.prepared, &self.traits.rule);
         self.footprints(with, (block, pairs.clone()), footprints);
-        // List the lights of covered pixels alone, pair by pair and lane by lane.
         if ground.asks_for_lights() {
-            let pairs = pairs.clone().map(|index| block.pair(index));
-            lights.extend(pairs.flat_map(|pair| {
-                pair.covered()
-                    .filter_map(move |lane| self.lights_at(&pair, lane, pixel_center(&pair, lane)))
-            }));
+            self.list_lights((block, pairs.clone()), lights);
         }
         // Filter all pairs at once, so that pixels near each other can share work.
         // Whatever an earlier block left stays: each covered pixel is written, others are not looked at.
@@ -315,13 +310,20 @@ impl<'a> Shader<'a> {
         lights.reflected(normal, (material, base), &self.scene.sky, reflectance)
     }
 
-    /// The lights at a place on the screen, if there is lighting.
-    pub(super) fn lights_at(
+    /// Lists the lights of the covered pixels of pairs of a block, pair by pair and lane by lane.
+    pub(super) fn list_lights(
         &self,
-        pair: &QuadPair,
-        lane: usize,
-        place: [f32; 2],
-    ) -> Option<LocalLights> {
+        (block, pairs): (&QuadBlock, Range<usize>),
+        lights: &mut Vec<LocalLights>,
+    ) {
+        lights.extend(pairs.map(|index| block.pair(index)).flat_map(|pair| {
+            pair.covered()
+                .filter_map(move |lane| self.lights_at(&pair, lane, pixel_center(&pair, lane)))
+        }));
+    }
+
+    /// The lights at a place on the screen, if there is lighting.
+    fn lights_at(&self, pair: &QuadPair, lane: usize, place: [f32; 2]) -> Option<LocalLights> {
         let point = self.is_lit().then(|| surface_point(pair.planes[lane / 4], place))??;
         let Scene { camera, lights, sky, .. } = self.scene;
         Some(LocalLights::at(&point, camera.eye, lights, sky))

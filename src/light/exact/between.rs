@@ -56,10 +56,10 @@ impl Occluders {
     /// The triangles that may hide a part of a disc from a part of a receiver, from its middle.
     pub fn between(&self, receiver: &Receiver, disc: &Disc) -> Vec<[Vec3; 3]> {
         let mut found = Vec::new();
-        self.visit(
-            |min, max| {
-                let middle = (min + max) * 0.5 - receiver.middle;
-                receiver.may_be_hidden_by(disc, middle, (max - min) * 0.5)
+        self.any(
+            |node| {
+                let middle = (node.min + node.max) * 0.5 - receiver.middle;
+                receiver.may_be_hidden_by(disc, middle, (node.max - node.min) * 0.5)
             },
             |triangle| {
                 let [a, b, c] = triangle.map(|corner| corner - receiver.middle);
@@ -73,6 +73,7 @@ impl Occluders {
                 {
                     found.push([a, b, c]);
                 }
+                false
             },
         );
         found

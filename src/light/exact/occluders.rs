@@ -36,9 +36,9 @@ pub struct Occluders {
 
 /// A box around triangles. The first child of an inner node is the next one.
 #[derive(Clone, Debug)]
-struct Node {
-    min: Vec3,
-    max: Vec3,
+pub(super) struct Node {
+    pub(super) min: Vec3,
+    pub(super) max: Vec3,
     /// The first triangle of a leaf, the second child of an inner node.
     at: u32,
     /// How many triangles a leaf has; 0 for an inner node.
@@ -83,39 +83,29 @@ impl Occluders {
         self.split(first + num / 2, end);
     }
 
-    /// Shows the triangles of all boxes that are wanted, by their least and greatest corners.
-    pub(super) fn visit(
-        &self,
-        is_wanted: impl Fn(Vec3, Vec3) -> bool,
-        mut show: impl FnMut(&[Vec3; 3]),
-    ) {
-        let mut left = Vec::from_iter((!self.nodes.is_empty()).then_some(0));
-        while let Some(index) = left.pop() {
-            let node = &self.nodes[index as usize];
-            if !is_wanted(node.min, node.max) {
-                continue;
-            }
-            if node.num == 0 {
-                left.extend([node.at, index + 1]);
-            } else {
-                let first = node.at as usize;
-                self.triangles[first..first + node.num as usize].iter().for_each(&mut show);
-            }
-        }
-    }
-
     /// Whether a triangle lies between a point and its light.
     pub fn hide(&self, ray: &LightRay) -> bool {
         // Along an axis that the ray does not move along, it is within a slab or never.
         let inverse = ray.direction.to_array().map(|d| if d == 0.0 { 1e300 } else { 1.0 / d });
         let inverse = DVec3::from_array(inverse);
+        self.any(|node| node.is_on(ray, inverse), |triangle| ray.is_hidden_by(triangle))
+    }
+
+    /// Whether a triangle in boxes that are wanted is the one; none is looked at after it.
+    #[inline(always)]
+    pub(super) fn any(
+        &self,
+        is_wanted: impl Fn(&Node) -> bool,
+        mut is_it: impl FnMut(&[Vec3; 3]) -> bool,
+    ) -> bool {
+        // Halved by number, a tree of 2^32 triangles is not as deep.
         let mut left = [0; 64];
         let mut num_left = usize::from(!self.nodes.is_empty());
         while num_left > 0 {
             num_left -= 1;
             let index = left[num_left];
             let node = &self.nodes[index as usize];
-            if !node.is_on(ray, inverse) {
+            if !is_wanted(node) {
                 continue;
             }
             if node.num == 0 {
@@ -124,8 +114,7 @@ impl Occluders {
                 continue;
             }
             let first = node.at as usize;
-            let triangles = &self.triangles[first..first + node.num as usize];
-            if triangles.iter().any(|triangle| ray.is_hidden_by(triangle)) {
+            if self.triangles[first..first + node.num as usize].iter().any(&mut is_it) {
                 return true;
             }
         }
