@@ -3,10 +3,13 @@
 use crate::input::Input;
 use crate::{check, hold};
 use basrelief::invariants::{
-    anisotropy_limit_only_limits, ellipse_is_bounded, flat_relief_hides_nothing, horizon_weights,
-    linear_in_texture, march_finds_first_hit, mirrored, records_are_visible, same_for_same_ellipse,
-    same_when_scaled, shifted, turned, within_texels, work_is_bounded,
+    Footprint, anisotropy_limit_only_limits, ellipse_is_bounded, flat_relief_hides_nothing,
+    flat_tables_give_the_mean, horizon_weights, linear_in_texture, march_finds_first_hit, mirrored,
+    records_are_visible, same_for_same_ellipse, same_when_scaled, shifted,
+    steps_find_the_references_hit, tables_give_texels_in_any_order, turned, within_texels,
+    work_is_bounded,
 };
+use basrelief::texture::Surface;
 use basrelief::{Ewa, Filter, Horizon, invariants};
 
 /// Any derivatives: the ellipse is finite and bounded, the colour finite and within the texels.
@@ -42,6 +45,28 @@ pub fn horizon(bytes: &[u8]) {
 /// The march finds the first hit that a dense march finds.
 pub fn march(bytes: &[u8]) {
     check(bytes, |input: Input| hold(march_finds_first_hit(&input.surface(), &input.pixel())));
+}
+
+/// Common practice in lanes finds what one ray in f64 does.
+pub fn parallax(bytes: &[u8]) {
+    check(bytes, |(input, samples): (Input, u8)| {
+        let samples = [1, 4, 64][usize::from(samples % 3)];
+        hold(steps_find_the_references_hit(&input.surface(), &input.pixel(), samples));
+    });
+}
+
+/// Tables of the far field: colours within the texels, the same in any order, the mean where
+/// nothing hides.
+pub fn tables(bytes: &[u8]) {
+    check(bytes, |(input, others, height): (Input, [Input; 2], u16)| {
+        let surface = |height| Surface::new(input.large_maps(height)).expect("valid maps");
+        let pixels = [input.pixel(), input.far_pixel(), others[0].far_pixel(), others[1].pixel()];
+        hold(tables_give_texels_in_any_order(&surface(None), &pixels, &input.horizon()));
+        // Many repeats wide, whatever the view.
+        let Footprint { base, displacement, .. } = input.near_pixel();
+        let wide = Footprint::new(base, [2.5, 0.4], [-0.6, 2.2], displacement).bounded();
+        hold(flat_tables_give_the_mean(&surface(Some(height)), &wide, &input.horizon()));
+    });
 }
 
 /// What a mean of texels keeps: linear in the texture, the same for the same ellipse, untouched by

@@ -78,6 +78,35 @@ impl Input {
         }
     }
 
+    /// Repeating maps large enough for tables, the texels of [`maps`](Self::maps) over and over with a
+    /// few that are not; of one height, where there is one.
+    pub(crate) fn large_maps(&self, height: Option<u16>) -> SurfaceMaps {
+        let Self { texels, size: [w, h], .. } = self;
+        let [w, h] = [192 + 2 * u32::from(w % 32), 96 + u32::from(h % 32)];
+        let at = |x: u32, y: u32, i: u32| {
+            f32::from(texels[((5 * x + 7 * y + x * y / 64 + i) % 24) as usize]) / 255.0
+        };
+        let mut heights = HeightImage::from_fn(w, h, |x, y| at(x / 3, y / 2, 0));
+        if let Some(height) = height {
+            heights.texels.fill(height);
+        }
+        SurfaceMaps {
+            albedo: Some(ColorImage::from_fn(w, h, |x, y| {
+                [at(x, y, 3), at(x, y / 4, 11), at(x / 2, y, 17)]
+            })),
+            height: Some(heights),
+            wrap: [Wrap::Repeat, Wrap::Mirror][usize::from(self.wrap % 2)],
+            ..Default::default()
+        }
+    }
+
+    /// A pixel like [`near_pixel`](Self::near_pixel) that is eight times as wide.
+    pub(crate) fn far_pixel(&self) -> Footprint {
+        let Footprint { base, dx, dy, displacement, .. } = self.near_pixel();
+        let wide = |d: [f32; 2]| d.map(|c| 8.0 * c);
+        Footprint::new(base, wide(dx), wide(dy), displacement).bounded()
+    }
+
     /// The pixel at a 1024th of a repeat within one of the middle, and with derivatives of up to
     /// half a repeat.
     pub(crate) fn near_pixel(&self) -> Footprint {

@@ -9,7 +9,7 @@ mod frames;
 mod input;
 mod loaders;
 
-pub use filters::{footprint_ellipse, horizon, march, symmetry, visible_sets};
+pub use filters::{footprint_ellipse, horizon, march, parallax, symmetry, tables, visible_sets};
 pub use frames::{command_line, coverage, render};
 pub use loaders::{load_image, load_mtl, load_obj};
 

@@ -45,30 +45,47 @@ fn damaged(random: &mut Rng, seeds: &[(String, Vec<u8>)]) -> Vec<u8> {
     bytes
 }
 
-/// Replays a target's corpus, then 5,000 inputs from a fixed seed; `BASRELIEF_CASES` says how many
-/// instead.
-fn replay(target: &str, run: fn(&[u8])) {
+/// Inputs of a target that takes less than a millisecond each, and of one that takes some thirty.
+const MANY: u32 = 5_000;
+const FEW: u32 = 100;
+
+/// Replays a target's corpus, then so many inputs from a fixed seed; `BASRELIEF_CASES` says how
+/// many instead.
+fn replay(num: u32, target: &str, run: fn(&[u8])) {
     let seeds = corpus(target);
     let check = |what: &str, bytes: &[u8]| {
         let result = std::panic::catch_unwind(|| run(bytes));
         assert!(result.is_ok(), "{target} fails on {what}: {bytes:?}");
     };
     seeds.iter().for_each(|(path, bytes)| check(path, bytes));
-    let num =
-        std::env::var("BASRELIEF_CASES").ok().and_then(|num| num.parse().ok()).unwrap_or(5_000);
+    let num = std::env::var("BASRELIEF_CASES").ok().and_then(|num| num.parse().ok()).unwrap_or(num);
     let mut random = Rng::with_seed(2017);
     (0..num).for_each(|i| check(&format!("input {i}"), &damaged(&mut random, &seeds)));
 }
 
 macro_rules! replays {
-    ($($target:ident)*) => {
+    ($($target:ident $num:ident;)*) => {
         mod replays {
             $(#[test]
             fn $target() {
-                super::replay(stringify!($target), basrelief_fuzz::$target);
+                super::replay(super::$num, stringify!($target), basrelief_fuzz::$target);
             })*
         }
     };
 }
 
-replays!(command_line coverage footprint_ellipse horizon load_image load_mtl load_obj march render symmetry visible_sets);
+replays! {
+    command_line MANY;
+    coverage MANY;
+    footprint_ellipse MANY;
+    horizon MANY;
+    load_image MANY;
+    load_mtl MANY;
+    load_obj MANY;
+    march MANY;
+    parallax MANY;
+    render MANY;
+    symmetry MANY;
+    tables FEW;
+    visible_sets MANY;
+}

@@ -28,6 +28,7 @@
 mod check;
 mod frames;
 mod light;
+mod looked_up;
 mod means;
 mod pixel;
 mod sets;
@@ -38,6 +39,9 @@ pub use crate::footprint::Footprint;
 pub use check::Checked;
 pub use frames::{fan_is_hit_once, frame_is_finite, march_finds_first_hit};
 pub use light::{lights_add, no_more_than_the_sky};
+pub use looked_up::{
+    flat_tables_give_the_mean, steps_find_the_references_hit, tables_give_texels_in_any_order,
+};
 pub use means::{flat_relief_hides_nothing, linear_in_texture, same_for_same_ellipse};
 pub use pixel::{
     anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels, work_is_bounded,

@@ -68,6 +68,17 @@ pub fn ellipse_is_bounded(pixel: &Footprint, texels: [f32; 2], max_anisotropy: f
 /// # Errors
 /// Says what broke.
 pub fn within_texels(surface: &Surface, pixel: &Footprint, filter: &Filter) -> Checked {
+    let (least, most) = texel_range(surface);
+    let color = filtered(surface, pixel, filter);
+    let is_within = |i: usize| {
+        let c = f64::from(color[i]);
+        c >= least[i] - ROUNDING && c <= most[i] + ROUNDING
+    };
+    ensure((0..3).all(is_within), || format!("{color:?} is not within {least:?} to {most:?}"))
+}
+
+/// The least and the greatest texel of the base level, channel by channel.
+pub(super) fn texel_range(surface: &Surface) -> ([f64; 3], [f64; 3]) {
     let base = surface.base();
     let [width, height] = base.size().map(|n| n as i32);
     let (mut least, mut most) = ([f64::INFINITY; 3], [0.0_f64; 3]);
@@ -75,12 +86,7 @@ pub fn within_texels(surface: &Surface, pixel: &Footprint, filter: &Filter) -> C
         let color = crate::reference::color(base, [x, y]);
         (0..3).for_each(|i| (least[i], most[i]) = (least[i].min(color[i]), most[i].max(color[i])));
     }
-    let color = filtered(surface, pixel, filter);
-    let is_within = |i: usize| {
-        let c = f64::from(color[i]);
-        c >= least[i] - ROUNDING && c <= most[i] + ROUNDING
-    };
-    ensure((0..3).all(is_within), || format!("{color:?} is not within {least:?} to {most:?}"))
+    (least, most)
 }
 
 /// A limit of the anisotropy above what the footprint has changes nothing, to the bit.

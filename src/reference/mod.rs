@@ -22,6 +22,6 @@ pub(crate) use stored::color;
 
 pub use formulas::{Conic, derivatives};
 pub use horizon::Lines;
-pub use parallax::parallax;
+pub use parallax::{parallax, parallax_with_margin};
 pub use supersample::{Ray, first_hit, supersampled};
 pub use texels::{RAY_TIE, mean, ray_margin, texels};

@@ -12,11 +12,23 @@ const ANISOTROPY: f64 = 16.0;
 /// What the ray through the middle of a pixel with so many rays finds: heights and colour are
 /// trilinear at the level of 16x anisotropic filtering.
 pub fn parallax(surface: &Surface, footprint: &Footprint, num_rays: u32) -> [f64; 3] {
+    parallax_with_margin(surface, footprint, num_rays).0
+}
+
+/// [`parallax`], and how far the ray is from the relief at least, in heights, at the step that goes
+/// under it and at all before: another precision finds the same step where it errs by less.
+pub fn parallax_with_margin(
+    surface: &Surface,
+    footprint: &Footprint,
+    num_rays: u32,
+) -> ([f64; 3], f64) {
     let size = texel_size(surface, footprint) / f64::from(num_rays).sqrt();
     let ray = Ray::new(surface, footprint.base, footprint.displacement);
     let gap = |depth: f64| 1.0 - depth - trilinear(surface, ray.at(depth), size, height);
     let step = |i: i32| f64::from(i) / f64::from(NUM_STEPS);
-    let hit = match (0..=NUM_STEPS).find(|&i| gap(step(i)) <= 0.0).unwrap_or(NUM_STEPS) {
+    let last = (0..=NUM_STEPS).find(|&i| gap(step(i)) <= 0.0).unwrap_or(NUM_STEPS);
+    let margin = (0..=last).map(|i| gap(step(i)).abs()).fold(f64::INFINITY, f64::min);
+    let hit = match last {
         0 => 0.0,
         under => {
             let [above, below] = [step(under - 1), step(under)];
@@ -24,7 +36,9 @@ pub fn parallax(surface: &Surface, footprint: &Footprint, num_rays: u32) -> [f64
         }
     };
     let at = ray.at(hit);
-    [0, 1, 2].map(|c| trilinear(surface, at, size, |level, texel| color(level, texel)[c]))
+    let color =
+        [0, 1, 2].map(|c| trilinear(surface, at, size, |level, texel| color(level, texel)[c]));
+    (color, margin)
 }
 
 /// The shorter derivative in base texels, a sixteenth of the longer at least.

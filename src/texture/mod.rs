@@ -21,4 +21,4 @@ pub(crate) use pyramid::box_taps;
 pub(crate) use rows::{APRON, FARTHEST, RowStarts, Rows};
 pub use surface::{Surface, SurfaceMaps};
 pub use wrap::Wrap;
-pub(crate) use wrap::wrap_index;
+pub(crate) use wrap::{near_origin, wrap_index};

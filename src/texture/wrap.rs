@@ -14,6 +14,21 @@ pub enum Wrap {
     Clamp,
 }
 
+/// Repeats from the origin beyond which a clamped texture is taken for that far: no footprint
+/// reaches back from there.
+const FAR_BEYOND_EDGE: f32 = 1024.0;
+
+/// A place in repeats with the same texels around it, so near the origin that texels can be told
+/// apart in f32, which those of a large texture cannot at 10,000 repeats.
+#[inline(always)]
+pub(crate) fn near_origin(place: [f32; 2], wrap: Wrap) -> [f32; 2] {
+    place.map(|c| match wrap {
+        Wrap::Clamp => c.clamp(-FAR_BEYOND_EDGE, FAR_BEYOND_EDGE),
+        // Exact: the whole part is a whole number, and what is left has digits to spare.
+        Wrap::Repeat | Wrap::Mirror => c - 2.0 * (0.5 * c).floor(),
+    })
+}
+
 /// The stored index of place `i` of an endless row of period `n`. A mirrored pattern is stored
 /// whole, so it repeats.
 #[inline(always)]

@@ -28,7 +28,7 @@
 use super::pixels::PixelsOnLines;
 use crate::footprint::{Ellipses, Footprints};
 use crate::simd::{PixelLanes, sum};
-use crate::texture::{Rows, Surface};
+use crate::texture::{Rows, Surface, near_origin};
 
 /// Displacements shorter than this many texels do not hide anything that a texel could show.
 const FLAT: f32 = 1.0 / 64.0;
@@ -51,8 +51,8 @@ pub(super) struct SweepFrame<'a> {
     is_turned: bool,
     /// Texels a repeat along the rows and across them.
     texels: [f32; 2],
-    /// The middle in repeats and in texels, along the rows and across; texel centres lie at whole
-    /// numbers.
+    /// The middle in repeats, and near the origin in texels, along the rows and across; texel centres
+    /// lie at whole numbers.
     middle: [f32; 2],
     pub(super) origin: [f32; 2],
     /// 1 where the walk goes to higher rows, else -1.
@@ -107,10 +107,11 @@ impl<'a> SweepFrame<'a> {
         // Walk along the longer axis of the displacement: lines then lean a texel a row at most.
         let is_turned = if is_flat { is_long_along_u } else { du.abs() > dv.abs() };
         let turn = |[u, v]: [f32; 2]| if is_turned { [v, u] } else { [u, v] };
+        let start = turn(near_origin(middle, surface.wrap()));
         let (middle, texels, [dx, dy]) = (turn(middle), turn(texels), turn([du, dv]));
         let toward = if dy < 0.0 { -1.0 } else { 1.0 };
         let (depth, shear) = if is_flat { (0.0, 0.0) } else { (dy.abs(), dx / dy * toward) };
-        let origin = [0, 1].map(|i| middle[i] * texels[i] - 0.5);
+        let origin = [0, 1].map(|i| start[i] * texels[i] - 0.5);
         Self {
             rows: level.rows(is_turned),
             is_turned,
