@@ -161,10 +161,10 @@ fn sets_of_texels_are_the_papers_on_every_footprint_of_a_frame() {
     assert!(num > 1000, "{num} footprints");
 }
 
-/// Mean square of how much the error (image less truth) of a filter changes from frame to frame of
-/// a slow walk.
-fn unrest(settings: &Settings, truths: &[Frame]) -> f64 {
-    let mut renderer = Renderer::new(floor(), settings.clone()).expect("a valid scene");
+/// How much the error (image less truth, sRGB-encoded) of a filter changes from frame to frame of a
+/// slow walk: for each pair of frames the three channels of all pixels.
+fn error_changes(scene: Scene, settings: &Settings, truths: &[Frame]) -> Vec<Vec<f32>> {
+    let mut renderer = Renderer::new(scene, settings.clone()).expect("a valid scene");
     let errors: Vec<Vec<f32>> = walk(&mut renderer, truths.len())
         .zip(truths)
         .map(|(frame, truth)| {
@@ -179,10 +179,16 @@ fn unrest(settings: &Settings, truths: &[Frame]) -> f64 {
                 .collect()
         })
         .collect();
-    let squares = errors
-        .windows(2)
-        .flat_map(|pair| pair[0].iter().zip(&pair[1]).map(|(a, b)| f64::from(a - b).powi(2)));
-    squares.sum::<f64>() / ((errors.len() - 1) * errors[0].len()) as f64
+    let changes =
+        errors.windows(2).map(|pair| pair[0].iter().zip(&pair[1]).map(|(a, b)| a - b).collect());
+    changes.collect()
+}
+
+fn mean_square<'a>(values: impl IntoIterator<Item = &'a f32>) -> f64 {
+    let (sum, num) = values
+        .into_iter()
+        .fold((0.0, 0), |(sum, num), value| (sum + f64::from(*value).powi(2), num + 1));
+    sum / f64::from(num.max(1))
 }
 
 /// Frames of a walk towards the horizon, a hundredth of a texture repeat each.
@@ -205,8 +211,9 @@ fn horizon_is_steady_in_motion() {
     let small = |filter| Settings { width: 96, height: 54, ..settings(filter) };
     let mut renderer = Renderer::new(floor(), small(truth(256))).expect("a valid scene");
     let truths: Vec<_> = walk(&mut renderer, 8).collect();
-    let horizon = unrest(&small(Filter::default()), &truths);
-    let parallax = unrest(&small(parallax(4)), &truths);
+    let unrest =
+        |filter| mean_square(error_changes(floor(), &small(filter), &truths).iter().flatten());
+    let (horizon, parallax) = (unrest(Filter::default()), unrest(parallax(4)));
     // A twentieth, over 60 frames too.
     println!(
         "mean square of the error's change: horizon {horizon:e}, parallax with 4 rays {parallax:e}"
@@ -232,6 +239,38 @@ fn changes_of_level_are_not_seen() {
     let step = errors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
     println!("greatest step of a row's mean error: {step:.5}");
     assert!(step < 1.0 / 255.0, "{step}");
+}
+
+/// Where a walk brings blocks of pixels from one mip level or table to the next, their error does
+/// not jump: it changes from frame to frame as that of sweeps on the base level throughout does,
+/// which is mostly the noise of the truth, and by less than a step of 8-bit colour.
+#[test]
+fn changes_of_level_are_not_seen_in_motion() {
+    const BLOCK: usize = 8;
+    let [width, height] = [160, 96];
+    let maps = SurfaceMaps { relief_depth: 0.06, ..cobbles(512, 8) };
+    let scene = floor_scene(Surface::new(maps).expect("valid maps"), 0.5);
+    let size = |filter| Settings { width, height, ..settings(filter) };
+    let mut renderer = Renderer::new(scene.clone(), size(truth(128))).expect("a valid scene");
+    let truths: Vec<_> = walk(&mut renderer, 6).collect();
+    let [width, height] = [width, height].map(|side| side as usize / BLOCK);
+    let greatest = |filter| {
+        let mut greatest = 0.0_f64;
+        for changes in error_changes(scene.clone(), &size(filter), &truths) {
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                let rows = (0..BLOCK).map(|row| 3 * BLOCK * ((y * BLOCK + row) * width + x));
+                let block = rows.flat_map(|start| &changes[start..start + 3 * BLOCK]);
+                greatest = greatest.max(mean_square(block).sqrt());
+            }
+        }
+        greatest * 255.0
+    };
+    let base = Horizon { lines: 64, far_field: false, ..Horizon::default() };
+    let (horizon, base) = (greatest(Filter::default()), greatest(Filter::Horizon(base)));
+    println!(
+        "greatest change of a block's error: {horizon:.2} steps of 8-bit colour, {base:.2} on the base level"
+    );
+    assert!(horizon < 1.0 && horizon < 1.1 * base, "{horizon}, {base} on the base level");
 }
 
 /// Thin footprints at the skyline once fell between the texels of a table, and were black.
