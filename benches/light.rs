@@ -13,7 +13,7 @@ fn light(criterion: &mut Criterion) {
     group.sample_size(10);
     for (name, displacement) in [("along_v", [0.01, -0.1]), ("along_u", [0.1, -0.01])] {
         group.bench_function(format!("lit_parts/1024_{name}"), |b| {
-            b.iter(|| LitParts::new(black_box(street.base()), displacement));
+            b.iter(|| LitParts::new(black_box(street.base()), displacement, street.relief_depth()));
         });
     }
     let frame = TextureFrame { tangents: [Vec3::X, Vec3::NEG_Z], normal: Vec3::Y };

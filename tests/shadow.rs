@@ -2,19 +2,19 @@
 
 mod common;
 
-use basrelief::relief::{HeightField, LitParts, march};
+use basrelief::relief::{HeightField, LitParts, RowScratch, march};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::{HeightImage, Surface, SurfaceMaps, Wrap};
 use common::Random;
 
 /// The lit part of every texel of the base level, row by row along u.
 fn lit_parts(surface: &Surface, displacement: [f32; 2]) -> Vec<Vec<f32>> {
-    let lit = LitParts::new(surface.base(), displacement);
+    let lit = LitParts::new(surface.base(), displacement, surface.relief_depth());
     let [width, height] = surface.base().size();
     let rows = |num: usize| {
         (0..num).map(|y| {
             let mut row = Vec::new();
-            lit.row(y, &mut Vec::new(), &mut row);
+            lit.row(y, &mut RowScratch::default(), &mut row);
             row
         })
     };

@@ -16,7 +16,7 @@
 
 use super::disc::{Disc, spiral};
 use super::surface_point::unit_axes;
-use crate::relief::{LitParts, MAX_SLOPE};
+use crate::relief::{LitParts, MAX_SLOPE, RowScratch};
 use crate::scene::{Light, Sky};
 use crate::simd::TexelLanes;
 use crate::texture::{Level, Surface, unpack_normals};
@@ -126,7 +126,7 @@ pub fn baked(surface: &Surface, beams: &[Beam]) -> Surface {
     let mut sums = [Sums::new([width, height]), Sums::new([height, width])];
     for beam in beams {
         let displacement = beam.slope.map(|slope| slope * surface.relief_depth());
-        let lit = LitParts::new(level, displacement);
+        let lit = LitParts::new(level, displacement, surface.relief_depth());
         sums[usize::from(lit.is_turned)].add(level, beam, &lit);
     }
     let [along_u, along_v] = &sums;
@@ -155,9 +155,8 @@ impl Sums {
         let [x, y, z] = beam.to_light.to_array();
         self.lanes.par_chunks_exact_mut(pitch).enumerate().for_each_init(
             Default::default,
-            |(lines, parts): &mut (Vec<f32>, Vec<f32>), (row, sums)| {
-                lit.row(row, lines, parts);
-                parts.resize(pitch * 8, 0.0);
+            |(scratch, parts): &mut (RowScratch, Vec<f32>), (row, sums)| {
+                lit.row(row, scratch, parts);
                 for (i, (sums, parts)) in sums.iter_mut().zip(parts.chunks_exact(8)).enumerate() {
                     let cos = match rows.normals(i * 8, row) {
                         Some(words) => {

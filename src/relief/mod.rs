@@ -26,4 +26,4 @@ pub use height_cells::{CellRays, HeightCells};
 pub use height_field::HeightField;
 pub use level_loss::LevelLoss;
 pub use march::{ViewRays, march, march_all};
-pub use shadow::LitParts;
+pub use shadow::{LitParts, RowScratch};
