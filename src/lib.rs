@@ -133,13 +133,14 @@
 //! | `light` | how bright a normal is |
 //! | [`filter`] | footprints to colours: all filters; the tables of the far field |
 //! | `render` | a whole frame, one numbered step a stage: [`Renderer`] |
+//! | [`layers`] | pictures for programs: depth, places, normals, names at the pixels' centres |
 //! | [`inspect`] | what one pixel sees, and why: the paper's figures as numbers |
 //! | [`metrics`] | PSNR, SSIM, FLIP, largest error, heat map |
 //! | [`golden`] | pictures that tests must draw again |
 //! | `reference` | the oracle that tests compare with: definitions in f64 |
 //! | [`invariants`] | what holds of filters and coverage for any input |
 //!
-//! A stage imports only from stages to its left and from the ground floor; the last five stand
+//! A stage imports only from stages to its left and from the ground floor; the last six stand
 //! outside, and no stage imports them. Rooms without a link are no part of the interface and may
 //! change with any version.
 //!
@@ -152,6 +153,7 @@ pub mod frame;
 pub mod golden;
 pub mod inspect;
 pub mod invariants;
+pub mod layers;
 pub mod load;
 pub mod metrics;
 pub mod scene;
@@ -181,6 +183,7 @@ pub mod simd;
 pub use error::{Error, Result};
 pub use footprint::FootprintRule;
 pub use frame::Frame;
+pub use layers::{Layer, Layers};
 pub use render::{DrawnPixel, Renderer, Stats, render};
 pub use scene::{Camera, Environment, Light, Material, Mesh, Scene, Sky};
 pub use settings::{

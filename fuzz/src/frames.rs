@@ -3,7 +3,9 @@
 use crate::input::{Input, Number, floor};
 use crate::{check, hold};
 use arbitrary::Arbitrary;
-use basrelief::invariants::{fan_is_hit_once, frame_is_finite, lights_add, no_more_than_the_sky};
+use basrelief::invariants::{
+    fan_is_hit_once, frame_is_finite, layers_agree, lights_add, no_more_than_the_sky,
+};
 use basrelief::{Camera, Filter, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky};
 use basrelief_cli::{Cli, Ending};
 use glam::{Vec2, Vec3};
@@ -66,6 +68,44 @@ pub fn render(bytes: &[u8]) {
             hold(lights_add(Scene { lights, sky, ..scene.clone() }, &settings, 2));
         }
         hold(frame_is_finite(scene, settings));
+    });
+}
+
+/// Small scenes of any triangles, seen from anywhere: what their layers say agrees.
+pub fn layers(bytes: &[u8]) {
+    type Corner = ([Number; 3], [Number; 2]);
+    type Drawn = (Input, Vec<Corner>, [[Number; 3]; 3], [Number; 2], u8);
+    check(bytes, |(texture, mut corners, [eye, target, up], [fov, near], options): Drawn| {
+        corners.truncate(48);
+        let vector = |v: [Number; 3]| Vec3::from(v.map(Number::get));
+        let positions = corners.iter().map(|corner| vector(corner.0)).collect();
+        let has_uv = options & 1 == 0;
+        let uv = corners.iter().map(|corner| Vec2::from(corner.1.map(Number::get)));
+        let tex_coords = if has_uv { uv.collect() } else { vec![] };
+        let triangles =
+            (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let surface = (options & 2 == 0).then(|| Arc::new(texture.surface()));
+        let scene = Scene {
+            meshes: vec![Mesh::new(positions, tex_coords, vec![], triangles)],
+            materials: vec![Material { surface, ..Material::default() }],
+            camera: Camera {
+                eye: vector(eye),
+                target: vector(target),
+                up: vector(up),
+                fov_degrees: 60.0 + 30.0 * fov.get(),
+                near: near.get().abs(),
+            },
+            ..Scene::default()
+        };
+        let settings = Settings {
+            width: 21,
+            height: 14,
+            filter: Filter::Nearest,
+            parallax: options & 4 == 0,
+            cull_back_faces: options & 8 != 0,
+            ..Settings::default()
+        };
+        hold(layers_agree(scene, settings));
     });
 }
 

@@ -79,6 +79,7 @@ replays! {
     coverage MANY;
     footprint_ellipse MANY;
     horizon MANY;
+    layers MANY;
     load_image MANY;
     load_mtl MANY;
     load_obj MANY;

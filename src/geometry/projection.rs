@@ -8,7 +8,7 @@
 use crate::scene::Camera;
 use crate::settings::Settings;
 use crate::simd::{f32x8, f64x8};
-use glam::Vec3;
+use glam::{DMat3, DVec3, Vec3};
 
 /// Fractional bits of snapped coordinates: 1/256 pixel, what GPUs use.
 pub const SUBPIXEL_BITS: u32 = 8;
@@ -38,6 +38,10 @@ pub struct Projection {
     eye: Vec3,
     /// Right and down, in pixels, and forward.
     axes: [Vec3; 3],
+    /// Pixels per unit of `x / w` and of `y / w`.
+    focal: [f64; 2],
+    /// Right, down and forward, each of length one.
+    unit_axes: DMat3,
     /// The frame's middle in pixels from its upper left corner.
     pub center: [f64; 2],
     /// Distance along the view before which nothing is drawn, in world units.
@@ -56,6 +60,8 @@ impl Projection {
         Self {
             eye: camera.eye,
             axes: [right * focal, up * -focal, forward],
+            focal: [f64::from(focal); 2],
+            unit_axes: DMat3::from_cols(right.as_dvec3(), -up.as_dvec3(), forward.as_dvec3()),
             center: [f64::from(settings.width) * 0.5, f64::from(settings.height) * 0.5],
             near: camera.near,
             width: settings.width,
@@ -98,6 +104,26 @@ impl Projection {
             *snapped =
                 if is_inside[lane] != 0 { places.map(|place| place[lane]) } else { UNSNAPPED };
         }
+    }
+
+    /// Where the ray through a place of the screen, in pixels, is at the distance 1 along the view:
+    /// to the right, down and forward, in world units (the axes of OpenCV's cameras).
+    #[inline]
+    pub fn ray(&self, [x, y]: [f64; 2]) -> DVec3 {
+        let [across, down] = [x - self.center[0], y - self.center[1]];
+        DVec3::new(across / self.focal[0], down / self.focal[1], 1.0)
+    }
+
+    /// The world position of a place given along the axes of [`Self::ray`].
+    #[inline]
+    pub fn world(&self, place: DVec3) -> Vec3 {
+        (self.eye.as_dvec3() + self.unit_axes * place).as_vec3()
+    }
+
+    /// A world direction along the axes of [`Self::ray`].
+    #[inline]
+    pub fn along_axes(&self, direction: Vec3) -> Vec3 {
+        (self.unit_axes.transpose() * direction.as_dvec3()).as_vec3()
     }
 
     /// The rays from the eye to eight world positions, world units.

@@ -27,6 +27,7 @@
 
 mod check;
 mod frames;
+mod layers;
 mod light;
 mod looked_up;
 mod means;
@@ -38,6 +39,7 @@ mod weights;
 pub use crate::footprint::Footprint;
 pub use check::Checked;
 pub use frames::{fan_is_hit_once, frame_is_finite, march_finds_first_hit};
+pub use layers::layers_agree;
 pub use light::{lights_add, no_more_than_the_sky};
 pub use looked_up::{
     flat_tables_give_the_mean, steps_find_the_references_hit, tables_give_texels_in_any_order,

@@ -59,8 +59,8 @@ impl RasterStats {
 /// Draws frames, and keeps its buffers between them.
 #[derive(Debug, Default)]
 pub struct Rasterizer {
-    bins: Bins,
-    scratches: Pool<Scratch>,
+    pub(super) bins: Bins,
+    pub(super) scratches: Pool<Scratch>,
 }
 
 /// Draws one frame, shaded pair by pair; see [`Rasterizer::draw`].
@@ -152,14 +152,14 @@ fn rows_by_tile<'a, P>(frame: &'a mut Frame<P>, grid: &TileGrid) -> Vec<&'a mut 
 }
 
 /// What all tiles share.
-struct Painter<'a> {
-    geometry: &'a Geometry,
-    scene: &'a Scene,
-    settings: &'a Settings,
-    group: &'a (dyn Fn([u32; 2]) -> u32 + Sync),
-    grid: TileGrid,
-    bins: &'a Bins,
-    clock: &'a (dyn Fn() -> f64 + Sync),
+pub(super) struct Painter<'a> {
+    pub(super) geometry: &'a Geometry,
+    pub(super) scene: &'a Scene,
+    pub(super) settings: &'a Settings,
+    pub(super) group: &'a (dyn Fn([u32; 2]) -> u32 + Sync),
+    pub(super) grid: TileGrid,
+    pub(super) bins: &'a Bins,
+    pub(super) clock: &'a (dyn Fn() -> f64 + Sync),
 }
 
 impl Painter<'_> {
@@ -232,7 +232,7 @@ impl Painter<'_> {
     }
 
     /// Makes the attribute planes of the triangles seen.
-    fn find_planes(&self, scratch: &mut Scratch) {
+    pub(super) fn find_planes(&self, scratch: &mut Scratch) {
         let Scratch { list, quads, slots, planes, triangles, grounds, .. } = scratch;
         // Mark the triangles that are seen; hidden ones get no planes.
         slots.clear();

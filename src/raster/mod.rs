@@ -15,6 +15,7 @@ mod attributes;
 mod bin;
 mod block;
 mod canvas;
+mod centers;
 mod draw;
 mod edge;
 mod gather;
@@ -28,6 +29,7 @@ mod tile;
 
 pub use bin::Bins;
 pub use block::QuadBlock;
+pub use centers::{CenterRow, CenterTile};
 pub use draw::{Drawn, RasterStats, Rasterizer, draw};
 pub use edge::{BLOCK, Edges, Rect, Row};
 pub use grid::{SHADED_BLOCK, TileGrid};

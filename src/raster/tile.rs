@@ -160,6 +160,12 @@ impl VisibilityBuffer {
         [self.num_columns, self.num_rows]
     }
 
+    /// The nearest 1 / w of eight pixels of a row at a sample; below any number where nothing is seen.
+    #[inline(always)]
+    pub(super) fn inverse_w(&self, sample: usize, column: usize, row: usize) -> f32x8 {
+        self.inverse_w[self.at(sample, column, row)]
+    }
+
     /// Local indices of the triangles that eight pixels of a row see at a sample, or [`NONE`].
     #[inline(always)]
     pub(super) fn triangles(&self, sample: usize, column: usize, row: usize) -> u32x8 {

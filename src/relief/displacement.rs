@@ -1,4 +1,4 @@
-//! How far a view ray moves along the texture on its way down through the relief.
+//! How far a view ray goes, and moves along the texture, on its way down through the relief.
 
 use crate::simd::PixelLanes;
 
@@ -10,13 +10,34 @@ pub const MAX_SLOPE: f32 = 64.0;
 ///
 /// A surface seen from behind shows its relief just as deep on its other side.
 pub fn displacement(view: &[PixelLanes; 3], relief_depth: f32) -> [PixelLanes; 2] {
+    let [alpha, beta, _] = *view;
+    let stretch = stretch(view, relief_depth);
+    [finite(alpha * stretch), finite(beta * stretch)]
+}
+
+/// How far the view ray goes on behind the polygon down to the deepest relief, in lengths of its
+/// way from the eye to the polygon.
+///
+/// ```text
+///   eye o
+///       |\
+///   w   | \  ray R: gamma repeats down on its way to the polygon
+///       |  \
+///   ----+---b----------------  polygon
+///            \
+///             q  hit at depth t: t S repeats further down, which is t S / gamma of R
+/// ```
+///
+/// So the hit is at `eye + R (1 + t S / gamma)`, and, since the distance along the view is linear
+/// on a ray, `w (1 + t S / gamma)` far away. Rays that are traced at [`MAX_SLOPE`] have the
+/// `gamma` of that slope: the hit is then where the view ray is over the same place of the texture.
+pub fn stretch(view: &[PixelLanes; 3], relief_depth: f32) -> PixelLanes {
     let [alpha, beta, gamma] = *view;
     let along = (alpha * alpha + beta * beta).sqrt();
     // A ray along the surface has gamma 0; the least value keeps the division finite where the ray
     // is 0 altogether.
     let gamma = gamma.abs().max(along * (1.0 / MAX_SLOPE)).max(PixelLanes::splat(1e-30));
-    let scale = PixelLanes::splat(relief_depth) / gamma;
-    [finite(alpha * scale), finite(beta * scale)]
+    PixelLanes::splat(relief_depth) / gamma
 }
 
 /// The lanes, with 0 in place of what is not a finite number.

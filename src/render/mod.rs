@@ -132,6 +132,14 @@ impl Renderer {
         &self.settings
     }
 
+    /// What is drawn, with what is prepared of it, and the buffers that drawing fills.
+    pub(crate) fn parts(
+        &mut self,
+    ) -> (&Scene, &Settings, &PreparedScene, &mut Geometry, &mut Rasterizer) {
+        let Self { scene, settings, prepared, geometry, rasterizer, .. } = self;
+        (scene, settings, prepared, geometry, rasterizer)
+    }
+
     /// Draws a frame on the threads of the current rayon pool.
     pub fn render(&mut self) -> Frame {
         let mut frame = Frame::default();

@@ -1,0 +1,96 @@
+//! Layers of a frame, tile by tile.
+
+use super::hits::{self, Hits};
+use super::layer::Layer;
+use super::place::write_place;
+use super::values::{Band, Layers, Slot};
+use crate::geometry::Projection;
+use crate::raster::{CenterRow, Drawn};
+use crate::render::Renderer;
+use crate::scene::Scene;
+use crate::settings::{Lighting, Settings};
+use crate::simd::set_bits;
+
+impl Renderer {
+    /// What the centres of a frame's pixels see, or those of its [region](Settings::region), on the
+    /// threads of the current rayon pool: see [`layers`](crate::layers).
+    pub fn render_layers(&mut self, layers: &[Layer]) -> Layers {
+        let (scene, asked, prepared, geometry, rasterizer) = self.parts();
+        let drawn = asked.drawn();
+        let mut found = Layers::empty(layers, drawn.width, drawn.height);
+        let has_relief = |material: usize| {
+            prepared.of_material(material, true).is_some_and(|surface| surface.field().is_some())
+        };
+        let is_traced = asked.parallax
+            && found.all.iter().any(|(layer, _)| layer.is_of_hit())
+            && (0..scene.materials.len()).any(has_relief);
+        let has_quads = found.all.iter().any(|(layer, _)| layer.asks_for_quads(is_traced));
+        let has_normals = found.all.iter().any(|(layer, _)| layer.is_normal());
+        let settings = Settings {
+            msaa: 1,
+            // What is lit has normals.
+            lighting: if has_normals { Lighting::Lit } else { Lighting::Unlit },
+            parallax: is_traced,
+            ..asked.clone()
+        };
+        geometry.project(scene, &settings);
+        let projection = *geometry.projection();
+        let hits = Hits { scene, prepared, is_traced, projection: &projection };
+        let mut bands = found.bands(&settings);
+        let group = |triangle| hits::group(scene, triangle);
+        let drawn = Drawn { scene, settings: &settings, group: &group };
+        rasterizer.see_centers(geometry, (drawn, has_quads), &mut bands, &|tile, band| {
+            let names_asked = band.slots.iter().any(|(layer, _)| layer.is_id());
+            for row in tile.rows() {
+                let mut names = [[u32::MAX; 2]; 8];
+                if names_asked {
+                    tile.names(&row, &mut names);
+                }
+                write_row(&row, &names, (scene, &projection), band);
+            }
+            hits.write(tile, band);
+        });
+        drop(bands);
+        found
+    }
+}
+
+/// Writes what needs no attributes: all of the polygon, which [`Hits`] then moves where relief is
+/// hit.
+#[inline(always)]
+fn write_row(
+    row: &CenterRow,
+    names: &[[u32; 2]; 8],
+    (scene, projection): (&Scene, &Projection),
+    band: &mut Band,
+) {
+    let w = row.w.to_array();
+    for lane in set_bits(row.seen) {
+        let pixel = [row.x + lane as i32, row.y];
+        let Some(at) = band.index(pixel) else { continue };
+        for (layer, slot) in &mut band.slots {
+            match slot {
+                Slot::Ids(ids) => {
+                    let [mesh, triangle] = names[lane];
+                    ids[at] = match layer {
+                        Layer::Object => mesh,
+                        Layer::Triangle => triangle,
+                        _ => scene.meshes[mesh as usize].material as u32,
+                    };
+                }
+                Slot::Floats(values) => {
+                    let is_polygon = matches!(layer, Layer::PolygonDepth | Layer::PolygonPosition);
+                    if is_polygon || layer.is_place() {
+                        write_place(
+                            *layer,
+                            pixel,
+                            w[lane],
+                            projection,
+                            &mut values[at * layer.num_channels()..],
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Layers made of a triangle's attributes, and of where the relief is hit.
+
+use super::layer::Layer;
+use super::place::write_place;
+use super::values::{Band, Slot};
+use crate::geometry::Projection;
+use crate::raster::{CenterTile, LitLanes, QuadBlock, QuadPair};
+use crate::relief::{HeightField, ViewRays, displacement, finite, march_all, stretch};
+use crate::render::PreparedScene;
+use crate::scene::{Material, Scene};
+use crate::simd::PixelLanes;
+use crate::texture::{FULL_F32, Texel};
+use glam::Vec3;
+
+/// What all tiles share.
+pub(super) struct Hits<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) prepared: &'a PreparedScene,
+    /// Whether relief is traced.
+    pub(super) is_traced: bool,
+    pub(super) projection: &'a Projection,
+}
+
+/// Where the rays of a pair of quads meet the relief.
+struct PairHits {
+    /// Texture coordinates of the hits.
+    uv: [PixelLanes; 2],
+    /// How much farther from the eye the hits are than the polygon, as a factor of 1 or more.
+    farther: PixelLanes,
+}
+
+/// One pixel of a pair.
+struct Pixel<'a> {
+    place: [i32; 2],
+    /// Distance along the view to the polygon.
+    w: f32,
+    /// As in [`PairHits`].
+    farther: f32,
+    polygon_uv: [f32; 2],
+    uv: [f32; 2],
+    lit: Option<&'a LitLanes>,
+    lane: usize,
+}
+
+/// The group in which quads are listed, by whether their mesh has texture coordinates.
+pub(super) fn group(scene: &Scene, [mesh, _]: [u32; 2]) -> u32 {
+    let mesh = &scene.meshes[mesh as usize];
+    2 * mesh.material as u32 + u32::from(!mesh.tex_coords.is_empty())
+}
+
+impl Hits<'_> {
+    /// Writes what the tile's quads see.
+    pub(super) fn write(&self, tile: &CenterTile, band: &mut Band) {
+        let mut hits = Vec::new();
+        for block in tile.blocks() {
+            // Without texture coordinates there is no relief.
+            let is_textured = block.group & 1 != 0;
+            let field = self
+                .prepared
+                .of_material(block.material, true)
+                .and_then(|surface| surface.field())
+                .filter(|_| self.is_traced && is_textured);
+            hits.clear();
+            hits.extend(
+                block
+                    .pairs()
+                    .map(|pair| PairHits { uv: pair.uv.map(finite), farther: PixelLanes::ONE }),
+            );
+            if let Some(field) = field {
+                trace(&block, field, &mut hits);
+            }
+            let material = &self.scene.materials[block.material];
+            for (pair, hits) in block.pairs().zip(&hits) {
+                self.write_pair(tile, (&pair, hits, field.is_some()), material, band);
+            }
+        }
+    }
+
+    fn write_pair(
+        &self,
+        tile: &CenterTile,
+        (pair, hits, has_relief): (&QuadPair, &PairHits, bool),
+        material: &Material,
+        band: &mut Band,
+    ) {
+        let lit = pair.lit();
+        for lane in pair.covered() {
+            let place = pair.pixel(lane);
+            let Some(at) = band.index(place) else { continue };
+            let of = |lanes: &PixelLanes| lanes.as_array()[lane];
+            let pixel = Pixel {
+                place,
+                w: tile.w(place),
+                farther: of(&hits.farther),
+                polygon_uv: pair.uv.each_ref().map(|lanes| of(&finite(*lanes))),
+                uv: hits.uv.each_ref().map(of),
+                lit: lit.as_ref(),
+                lane,
+            };
+            for (layer, slot) in &mut band.slots {
+                let Slot::Floats(values) = slot else { continue };
+                let values = &mut values[at * layer.num_channels()..];
+                // Without relief the polygon's place stands already.
+                if layer.is_place() && has_relief {
+                    // Infinity is the background's.
+                    let w = (pixel.w * pixel.farther).min(f32::MAX);
+                    write_place(*layer, place, w, self.projection, values);
+                } else {
+                    self.write_attribute(*layer, &pixel, material, values);
+                }
+            }
+        }
+    }
+
+    fn write_attribute(&self, layer: Layer, pixel: &Pixel, material: &Material, out: &mut [f32]) {
+        match layer {
+            Layer::Uv => out[..2].copy_from_slice(&pixel.uv),
+            Layer::PolygonUv => out[..2].copy_from_slice(&pixel.polygon_uv),
+            Layer::Albedo => out[..3].copy_from_slice(&albedo(material, pixel.uv).to_array()),
+            Layer::PolygonNormal => {
+                out[..3].copy_from_slice(&self.normal(pixel, Texel::UP).to_array());
+            }
+            Layer::Normal | Layer::CameraNormal => {
+                let normal = self.normal(pixel, texel(material, pixel.uv).1);
+                let is_world = layer == Layer::Normal;
+                let normal = if is_world { normal } else { self.projection.along_axes(normal) };
+                out[..3].copy_from_slice(&normal.to_array());
+            }
+            _ => {}
+        }
+    }
+
+    /// A normal of the texture's frame in the world, on the side that the eye sees.
+    fn normal(&self, pixel: &Pixel, [x, y, z]: [f32; 3]) -> Vec3 {
+        let Some(lit) = pixel.lit else { return Vec3::ZERO };
+        let at =
+            |lanes: &[PixelLanes; 3]| Vec3::from(lanes.map(|lanes| lanes.as_array()[pixel.lane]));
+        let normal = at(&lit.normal).normalize_or(Vec3::Z);
+        let ray = self.projection.ray(pixel.place.map(|c| f64::from(c) + 0.5)).as_vec3();
+        let is_away = self.projection.along_axes(normal).dot(ray) > 0.0;
+        let normal = if is_away { -normal } else { normal };
+        // Take off what interpolated tangents have along the normal.
+        let [u, v] = [at(&lit.tangent_u), at(&lit.tangent_v)]
+            .map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
+        (u * x + v * y + normal * z).normalize_or(normal)
+    }
+}
+
+/// Traces the rays of a block's pairs to the relief.
+fn trace(block: &QuadBlock, field: &HeightField, hits: &mut [PairHits]) {
+    let views: Vec<_> = block.pairs().map(|pair| (pair.view(), pair.covered_bits())).collect();
+    let rays = hits.iter().zip(&views).map(|(hits, (view, covered))| ViewRays {
+        base: hits.uv,
+        displacement: displacement(view, field.relief_depth),
+        wanted: *covered,
+    });
+    let mut depths = vec![PixelLanes::ZERO; hits.len()];
+    march_all(field, rays, &mut depths);
+    for ((hits, (view, _)), depth) in hits.iter_mut().zip(&views).zip(depths) {
+        let displacement = displacement(view, field.relief_depth);
+        hits.uv = [0, 1].map(|i| hits.uv[i] + displacement[i] * depth);
+        // At least 1, and so never before the polygon, by the rules of rounding.
+        hits.farther = PixelLanes::ONE + finite(stretch(view, field.relief_depth) * depth);
+    }
+}
+
+/// Colour, as stored, and normal of the full texture's texel at a place in repeats.
+fn texel(material: &Material, uv: [f32; 2]) -> ([f32; 3], [f32; 3]) {
+    let Some(surface) = &material.surface else { return ([FULL_F32; 3], Texel::UP) };
+    let [x, y] = surface.base().in_texels(uv).map(|c| c.floor() as i32);
+    let Texel { color, normal } = surface.base().texel(x, y);
+    (color, normal)
+}
+
+/// Linear colour of the full texture's texel at a place in repeats, as the material shows it.
+fn albedo(material: &Material, uv: [f32; 2]) -> Vec3 {
+    let scale = material.surface.as_ref().map_or(1.0, |surface| surface.color_scale());
+    Vec3::from(texel(material, uv).0) * material.base_color * (scale / FULL_F32)
+}
