@@ -19,6 +19,9 @@ pub(crate) struct Ground<'a> {
     pub(crate) unlit: &'a Prepared,
     /// Whether there is light.
     pub(crate) is_lit: bool,
+    /// Whether its texels are lit as they are swept: a relief on what is curved, under suns and a
+    /// sky.
+    pub(crate) is_swept: bool,
     /// Where its light is baked.
     pub(crate) baked: Option<LitPiece<'a>>,
 }
@@ -51,7 +54,7 @@ impl Ground<'_> {
 
     /// Whether lights are evaluated place by place.
     pub(crate) fn asks_for_lights(&self) -> bool {
-        self.is_lit && self.baked.is_none()
+        self.is_lit && self.baked.is_none() && !self.is_swept
     }
 
     /// The colour of a surface's texel as the material shows it.

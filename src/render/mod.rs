@@ -8,6 +8,7 @@
 //! 4. `raster` adds the colours up to pixels.
 
 mod baked;
+mod curved;
 mod exact;
 mod ground;
 mod prepared;

@@ -143,7 +143,12 @@ impl PreparedScene {
             baked.map_or((unlit, None), |(prepared, baked)| (prepared, Some(baked)));
         let is_lit = settings.lighting == Lighting::Lit;
         let material = &scene.materials[material];
-        Some(Ground { material, prepared, unlit, is_lit, baked })
+        let is_swept = self.baked.is_some()
+            && baked.is_none()
+            && settings.filter.traits().asks_for_lights
+            && prepared.field().is_some()
+            && prepared.surface().has_normals();
+        Some(Ground { material, prepared, unlit, is_lit, is_swept, baked })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

@@ -55,7 +55,8 @@ impl Steps {
 }
 
 /// A group of lines of a grid. `HALVES`: they are read half way between rows, too.
-pub(super) struct Lines<'a, const HALVES: bool> {
+pub(super) struct Lines<'a, const HALVES: bool, const LIT: bool> {
+    grid: &'a Grid<'a>,
     frame: &'a SweepFrame<'a>,
     most_scale: f32,
     /// The first line's `xi`, and how far from it the others lie.
@@ -101,16 +102,17 @@ impl SeenAt {
     }
 }
 
-impl<'a, const HALVES: bool> Lines<'a, HALVES> {
+impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
     /// Steps a row.
     pub(super) const STEPS: i32 = if HALVES { 2 } else { 1 };
 
-    pub(super) fn new(grid: &Grid<'a>, first: usize) -> Self {
+    pub(super) fn new(grid: &'a Grid<'a>, first: usize) -> Self {
         let frame = grid.frame;
         let others = line_indices() * grid.spacing;
         let xi = first as f32 * grid.spacing + grid.first;
         let depths = (others + xi) * frame.tilt + frame.depth;
         Self {
+            grid,
             frame,
             most_scale: grid.most_scale,
             xi,
@@ -204,9 +206,9 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
     ) -> Texels<CHANNELS> {
         let between = self.between(steps, i);
         let [near, far] = &steps.starts;
-        let mut values = self.values(near[i], &between);
+        let mut values = self.values(near[i], &between, steps.places[i]);
         if HALVES && near[i] != far[i] {
-            let others = self.values::<CHANNELS>(far[i], &between);
+            let others = self.values::<CHANNELS>(far[i], &between, steps.places[i]);
             (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
         }
         Texels { values, place: steps.places[i] }
@@ -218,6 +220,7 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
         &self,
         start: usize,
         between: &Between,
+        place: LineLanes,
     ) -> [LineLanes; CHANNELS] {
         let rows = self.frame.rows;
         let (words, stride) = (rows.words(), rows.stride());
@@ -225,7 +228,16 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
         let [red, green] = between.halves_at(words, start);
         let [blue, _] = between.halves_at(words, start + stride);
         values[..3].copy_from_slice(&[red, green, blue]);
-        if CHANNELS > 3 && rows.has_normals() {
+        if let (true, Some(light)) = (LIT, self.grid.light) {
+            let [near, far] = between.words_at(words, start + 2 * stride).map(|words| {
+                let [a, b] = halves(words).map(unpack_normals);
+                [0, 1, 2].map(|i| join([a[i], b[i]]))
+            });
+            let normal = [0, 1, 2].map(|i| between.mix(near[i], far[i]));
+            let p = place * self.grid.step + self.grid.begin;
+            let shown = light.at(start, rows.pitch(), between, [self.others + self.xi, p], &normal);
+            (0..3).for_each(|c| values[c] = values[c] * shown[c]);
+        } else if CHANNELS > 3 && rows.has_normals() {
             let [near, far] = between.words_at(words, start + 2 * stride).map(|words| {
                 let [a, b] = halves(words).map(unpack_normals);
                 [0, 1, 2].map(|i| join([a[i], b[i]]))

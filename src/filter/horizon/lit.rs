@@ -1,0 +1,203 @@
+//! The light of a patch of a curved surface: what shines on each texel that its lines see.
+//!
+//! Over a patch the frame of the surface turns a little. What its lights are at a seen place is
+//! taken for linear in the place, fitted to the patch's pixels; a texel shows the light of the
+//! polygon's point that it is seen over.
+
+use super::pixels::PixelOnLines;
+use crate::light::{Curved, NUM_AZIMUTHS, SKY_PLANE, Slant, linear_sky};
+use crate::relief::directions::diamond_angle;
+use crate::simd::{Between, LineLanes, as_signed_words, u32x16};
+use crate::texture::Rows;
+
+/// A number that is linear in the line and the seen place.
+#[derive(Clone, Copy, Debug, Default)]
+struct Linear {
+    middle: f32,
+    per_line: f32,
+    per_row: f32,
+}
+
+/// The lights of a patch.
+#[derive(Clone, Debug)]
+pub(super) struct PatchLight<'a> {
+    /// The horizons of the patch's level.
+    rows: &'a Rows,
+    /// The `xi` and `q` around which numbers are linear.
+    middle: [f32; 2],
+    suns: Vec<PatchSun>,
+    sky: [[f32; 3]; 4],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct PatchSun {
+    intensity: [f32; 3],
+    to_light: [Linear; 3],
+    height: Linear,
+    /// 1 over how far its disc reaches in height.
+    inverse_width: f32,
+    /// The azimuths between which it stands: the planes of their horizons and the bits in them.
+    azimuths: [(usize, u32); 2],
+    part: Linear,
+}
+
+/// Least part of a height over which a sun rises: two steps of a byte.
+const LEAST_WIDTH: f32 = 1.0 / 128.0;
+
+impl<'a> PatchLight<'a> {
+    /// The lights of picked pixels, which lie so on the lines of a patch.
+    pub(super) fn new(
+        curved: &Curved<'a>,
+        rows: &'a Rows,
+        picks: &[u8],
+        pixels: &[PixelOnLines],
+    ) -> Self {
+        let fit = Fit::new(pixels);
+        let suns = curved.suns.iter().enumerate().map(|(i, sun)| {
+            let slant = |pick: u8| (curved.slant(usize::from(pick / 8), i), usize::from(pick % 8));
+            let of = |of: &dyn Fn(&Slant, usize) -> f32| {
+                fit.linear(picks.iter().map(|pick| {
+                    let (slant, lane) = slant(*pick);
+                    of(slant, lane)
+                }))
+            };
+            let to_light = [0, 1, 2].map(|c| of(&|slant, lane| slant.to_light[c].as_array()[lane]));
+            let height = of(&|slant, lane| slant.height.as_array()[lane]);
+            let along = |slant: &Slant, lane: usize| slant.along.map(|c| c.as_array()[lane]);
+            let mut sum = [0.0_f32; 2];
+            for pick in picks {
+                let (slant, lane) = slant(*pick);
+                let [x, y] = along(slant, lane);
+                sum = [sum[0] + x, sum[1] + y];
+            }
+            let per_azimuth = NUM_AZIMUTHS as f32 * 0.25;
+            let first = (diamond_angle(sum[0], sum[1]) * per_azimuth).floor();
+            let part = of(&|slant, lane| {
+                let [x, y] = along(slant, lane);
+                let part = diamond_angle(x, y) * per_azimuth - first;
+                let half = NUM_AZIMUTHS as f32 * 0.5;
+                if part > half {
+                    part - 2.0 * half
+                } else if part < -half {
+                    part + 2.0 * half
+                } else {
+                    part
+                }
+            });
+            let azimuths = [0, 1].map(|next| {
+                let azimuth = (first as usize + next) % NUM_AZIMUTHS;
+                (azimuth / 4, (azimuth % 4 * 8) as u32)
+            });
+            let c = height.middle.clamp(0.0, 1.0);
+            // dc/de = 1 / (cos + sin)^2 = c^2 + (1 - c)^2.
+            let width = 2.0 * sun.radius * (c * c + (1.0 - c) * (1.0 - c));
+            let inverse_width = 1.0 / width.max(LEAST_WIDTH);
+            PatchSun {
+                intensity: sun.intensity.to_array(),
+                to_light,
+                height,
+                inverse_width,
+                azimuths,
+                part,
+            }
+        });
+        let suns = suns.collect();
+        let axes = curved.mean_axes(picks);
+        let sky = linear_sky(curved.sky, axes).map(|c| c.to_array());
+        Self { rows, middle: fit.middle, suns, sky }
+    }
+
+    /// What a white surface shows of the lights where lines cross a row whose words of horizons
+    /// begin at `start`.
+    #[inline(always)]
+    pub(super) fn at(
+        &self,
+        start: usize,
+        pitch: usize,
+        between: &Between,
+        [xi, p]: [LineLanes; 2],
+        normal: &[LineLanes; 3],
+    ) -> [LineLanes; 3] {
+        // The same row and column among rows of another pitch.
+        let (row, column) = (start / pitch, start % pitch);
+        let start = row * self.rows.pitch() + column;
+        let (words, stride) = (self.rows.words(), self.rows.stride());
+        let bytes = |plane: usize| between.words_at(words, start + plane * stride);
+        let number = |word: u32x16, shift: u32| {
+            LineLanes::from_i32x16(as_signed_words((word >> shift) & u32x16::splat(0xff)))
+        };
+        let [xi, p] = [xi - self.middle[0], p - self.middle[1]];
+        let [near, far] = bytes(SKY_PLANE);
+        let mut sums = [LineLanes::ZERO; 3];
+        for (i, sky) in self.sky.iter().enumerate() {
+            let t =
+                between.mix(number(near, 8 * i as u32), number(far, 8 * i as u32)) * (1.0 / 255.0);
+            let t = if i == 1 || i == 2 { t * 2.0 - 1.0 } else { t };
+            (0..3).for_each(|c| sums[c] += t * sky[c]);
+        }
+        (0..3).for_each(|c| sums[c] = sums[c].fast_max(LineLanes::ZERO));
+        for sun in &self.suns {
+            let [l0, l1, l2] = sun.to_light.map(|l| l.at(xi, p));
+            let n_l = (normal[0] * l0 + normal[1] * l1 + normal[2] * l2).fast_max(LineLanes::ZERO);
+            let [a, b] = sun.azimuths.map(|(plane, shift)| {
+                let [near, far] = bytes(plane);
+                between.mix(number(near, shift), number(far, shift))
+            });
+            let part = sun.part.at(xi, p).fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
+            let horizon = (a + (b - a) * part) * (1.0 / 255.0);
+            let lit = (sun.height.at(xi, p) - horizon) * sun.inverse_width + 0.5;
+            let lit = n_l * lit.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
+            (0..3).for_each(|c| sums[c] += lit * sun.intensity[c]);
+        }
+        sums
+    }
+}
+
+impl Linear {
+    #[inline(always)]
+    fn at(&self, xi: LineLanes, p: LineLanes) -> LineLanes {
+        xi * self.per_line + p * self.per_row + self.middle
+    }
+}
+
+/// Least squares over the places of pixels.
+struct Fit<'a> {
+    pixels: &'a [PixelOnLines],
+    middle: [f32; 2],
+    /// The inverse of the matrix of second moments: xx, xq, qq.
+    inverse: [f32; 3],
+}
+
+impl<'a> Fit<'a> {
+    fn new(pixels: &'a [PixelOnLines]) -> Self {
+        let num = 1.0 / pixels.len() as f32;
+        let middle = pixels.iter().fold([0.0; 2], |sum, p| [sum[0] + p.xi, sum[1] + p.q]);
+        let middle = middle.map(|sum: f32| sum * num);
+        let mut moments = [0.0_f32; 3];
+        for p in pixels {
+            let [x, q] = [p.xi - middle[0], p.q - middle[1]];
+            moments = [moments[0] + x * x, moments[1] + x * q, moments[2] + q * q];
+        }
+        // A little more on the diagonal leaves pixels in one line the least slope.
+        let more = 1e-4 * (moments[0] + moments[2]);
+        let [xx, xq, qq] = [moments[0] + more, moments[1], moments[2] + more];
+        let determinant = xx * qq - xq * xq;
+        let inverse = if determinant > 0.0 {
+            [qq / determinant, -xq / determinant, xx / determinant]
+        } else {
+            [0.0; 3]
+        };
+        Self { pixels, middle, inverse }
+    }
+
+    fn linear(&self, values: impl Iterator<Item = f32> + Clone) -> Linear {
+        let middle = values.clone().sum::<f32>() / self.pixels.len() as f32;
+        let [mut x, mut q] = [0.0_f32; 2];
+        for (p, value) in self.pixels.iter().zip(values) {
+            x += (p.xi - self.middle[0]) * (value - middle);
+            q += (p.q - self.middle[1]) * (value - middle);
+        }
+        let [xx, xq, qq] = self.inverse;
+        Linear { middle, per_line: xx * x + xq * q, per_row: xq * x + qq * q }
+    }
+}
