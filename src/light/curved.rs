@@ -33,8 +33,8 @@ pub struct Slant {
 pub struct Curved<'a> {
     /// The suns.
     pub suns: &'a [CurvedSun],
-    /// The sky.
-    pub sky: &'a Sky,
+    /// The sky, if it is one of them.
+    pub sky: Option<&'a Sky>,
     /// How each vector of pixels lies.
     pub frames: &'a [FrameLanes],
     /// How each sun shines on the first vector, on the second, and so on.

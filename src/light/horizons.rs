@@ -20,7 +20,6 @@
 
 use crate::relief::LitParts;
 use crate::relief::directions::diamond_direction;
-use crate::simd::TexelLanes;
 use crate::texture::{Level, Rows, Surface, box_taps};
 use rayon::prelude::*;
 

@@ -150,6 +150,11 @@ impl Baked {
         sides.any(|side| !side.apart.is_empty())
     }
 
+    /// Whether a mesh is not of flat pieces.
+    pub(crate) fn has_curved(&self) -> bool {
+        self.of_mesh.iter().any(|mesh| matches!(mesh, OfMesh::All(NONE)))
+    }
+
     /// The group of a triangle, by the index of its mesh and in it; `None` where it is not baked.
     pub(crate) fn group(&self, scene: &Scene, triangle: [u32; 2]) -> Option<u32> {
         self.seen(scene, triangle).map(|(piece, side)| (2 * piece + side) as u32)

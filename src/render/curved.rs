@@ -1,35 +1,91 @@
-//! The lights of a block of a curved surface, as its texels are lit while they are swept.
+//! Blocks of a curved surface, whose texels are lit as they are swept.
+//!
+//! Suns that other meshes, or the mesh itself, hide from a part of a block are swept apart, and each
+//! pixel takes of them what it sees.
 
+use super::ground::{Ground, Swept};
+use super::shade::{ShadeScratch, Shader};
+use super::shadows::hidden_on_curved;
 use crate::light::{Curved, CurvedSun, Disc, FrameLanes, Slant};
 use crate::raster::{LitLanes, QuadBlock};
 use crate::scene::{Light, Scene, Sky};
+use crate::simd::PixelLanes;
 use glam::Vec3;
 use std::ops::Range;
 
+impl Shader<'_> {
+    /// Appends the lit colours of a block's pairs.
+    pub(super) fn swept(
+        &self,
+        ground: &Ground,
+        all: Swept,
+        block: &QuadBlock,
+        scratch: &mut ShadeScratch,
+        colors: &mut Vec<[PixelLanes; 3]>,
+    ) {
+        let occluders = self.prepared.occluders(self.scene);
+        let hidden = hidden_on_curved(self.scene, occluders, ground, block).unwrap_or_default();
+        // Find the suns that reach all of the block, and those that reach a part.
+        let (mut whole, mut parts) = (all, Vec::new());
+        for (i, hidden) in hidden.iter().enumerate() {
+            let covered = || hidden.iter().zip(block.pairs());
+            let all_are = |value: f32| {
+                covered().all(|(hidden, pair)| {
+                    pair.covered().all(|lane| hidden.as_array()[lane] == value)
+                })
+            };
+            if !all_are(0.0) {
+                whole.suns &= !(1 << i);
+                if !all_are(1.0) {
+                    parts.push((i, hidden));
+                }
+            }
+        }
+        let start = colors.len();
+        self.textured(&Ground { swept: Some(whole), ..*ground }, block, scratch, colors);
+        let mut part = Vec::new();
+        for (i, hidden) in parts {
+            part.clear();
+            let sun = Swept { suns: 1 << i, has_sky: false };
+            self.textured(&Ground { swept: Some(sun), ..*ground }, block, scratch, &mut part);
+            for ((color, part), hidden) in colors[start..].iter_mut().zip(&part).zip(hidden) {
+                (0..3).for_each(|c| color[c] += part[c] * (PixelLanes::ONE - *hidden));
+            }
+        }
+    }
+}
+
 /// What lights pairs of a block.
-#[derive(Debug, Default)]
-pub(super) struct CurvedLights {
+#[derive(Debug)]
+pub(super) struct CurvedLights<'a> {
+    sky: Option<&'a Sky>,
     suns: Vec<CurvedSun>,
     frames: Vec<FrameLanes>,
     slants: Vec<Slant>,
 }
 
-impl CurvedLights {
-    /// The suns of a scene on pairs of a block.
-    pub(super) fn new(scene: &Scene, block: &QuadBlock, pairs: Range<usize>) -> Self {
-        let mut all = Self::default();
-        let discs = scene.lights.iter().filter_map(|light| match *light {
-            Light::Sun { to_light, intensity, angular_size } => {
+impl<'a> CurvedLights<'a> {
+    /// Some of a scene's lights on pairs of a block.
+    pub(super) fn new(
+        scene: &'a Scene,
+        swept: Swept,
+        block: &QuadBlock,
+        pairs: Range<usize>,
+    ) -> Self {
+        let discs = scene.lights.iter().enumerate().filter_map(|(i, light)| match *light {
+            Light::Sun { to_light, intensity, angular_size } if swept.suns >> i & 1 == 1 => {
                 Some((Disc::new(to_light.normalize_or_zero(), angular_size), intensity))
             }
-            Light::Point { .. } => None,
+            _ => None,
         });
         let discs: Vec<(Disc, Vec3)> = discs.collect();
-        all.suns.extend(
-            discs
-                .iter()
-                .map(|(disc, intensity)| CurvedSun { intensity: *intensity, radius: disc.radius }),
-        );
+        let sun = |(disc, intensity): &(Disc, Vec3)| CurvedSun {
+            intensity: *intensity,
+            radius: disc.radius,
+        };
+        let sky = swept.has_sky.then_some(&scene.sky);
+        let suns = discs.iter().map(sun).collect();
+        let mut all = Self { sky, suns, frames: Vec::new(), slants: Vec::new() };
         for pair in pairs.map(|index| block.pair(index)) {
             let Some(LitLanes { position, normal, tangent_u, tangent_v }) = pair.lit() else {
                 continue;
@@ -42,8 +98,9 @@ impl CurvedLights {
         all
     }
 
-    /// All of them, under a sky.
-    pub(super) fn all<'a>(&'a self, sky: &'a Sky) -> Curved<'a> {
-        Curved { suns: &self.suns, sky, frames: &self.frames, slants: &self.slants }
+    /// All of them.
+    pub(super) fn all(&self) -> Curved<'_> {
+        let Self { sky, suns, frames, slants } = self;
+        Curved { suns, sky: *sky, frames, slants }
     }
 }

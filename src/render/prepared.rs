@@ -1,7 +1,7 @@
 //! The prepared surface of each material.
 
 use super::baked::Baked;
-use super::ground::Ground;
+use super::ground::{Ground, Swept};
 use crate::filter::Prepared;
 use crate::light::exact::Occluders;
 use crate::light::reflection::Reflectance;
@@ -90,7 +90,7 @@ impl PreparedScene {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
             baked.light(scene, |material| self.of_material(material, settings.parallax));
-            if baked.has_shadows() {
+            if baked.has_shadows() || baked.has_curved() {
                 self.occluders(scene);
             }
             self.baked = Some((settings.parallax, baked));
@@ -143,12 +143,14 @@ impl PreparedScene {
             baked.map_or((unlit, None), |(prepared, baked)| (prepared, Some(baked)));
         let is_lit = settings.lighting == Lighting::Lit;
         let material = &scene.materials[material];
-        let is_swept = self.baked.is_some()
+        let is_swept = scene.lights.len() <= 64
+            && self.baked.is_some()
             && baked.is_none()
             && settings.filter.traits().asks_for_lights
             && prepared.field().is_some()
             && prepared.surface().has_normals();
-        Some(Ground { material, prepared, unlit, is_lit, is_swept, baked })
+        let swept = is_swept.then_some(Swept { suns: u64::MAX, has_sky: true });
+        Some(Ground { material, prepared, unlit, is_lit, swept, baked })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

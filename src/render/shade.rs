@@ -90,11 +90,15 @@ impl<'a> Shader<'a> {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
         let start = colors.len();
-        self.textured(&ground, block, &mut scratch, colors);
+        if let Some(swept) = ground.swept {
+            self.swept(&ground, swept, block, &mut scratch, colors);
+        } else {
+            self.textured(&ground, block, &mut scratch, colors);
+        }
         if let Some(lit) = ground.baked {
             self.shadow(&ground, &lit, block, &mut scratch, &mut colors[start..]);
         }
-        if ground.baked.is_some() || ground.is_swept {
+        if ground.baked.is_some() || ground.swept.is_some() {
             self.reflect(&ground, block, &mut scratch, &mut colors[start..]);
         }
     }
@@ -153,9 +157,9 @@ impl<'a> Shader<'a> {
         // Whatever an earlier block left stays: each covered pixel is written, others are not looked at.
         filtered.resize(pairs.len(), Filtered::default());
         let curved_lights;
-        let curved = if ground.is_swept {
-            curved_lights = CurvedLights::new(self.scene, block, pairs.clone());
-            Some(curved_lights.all(&self.scene.sky))
+        let curved = if let Some(swept) = ground.swept {
+            curved_lights = CurvedLights::new(self.scene, swept, block, pairs.clone());
+            Some(curved_lights.all())
         } else {
             None
         };

@@ -15,8 +15,8 @@
 
 use super::ground::{Ground, LitPiece};
 use super::shade::{ShadeScratch, Shader};
-use crate::light::Disc;
 use crate::light::exact::{Occluders, Receiver};
+use crate::light::{Disc, FrameLanes};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
 use crate::relief::{displacement, march};
 use crate::scene::{Light, Scene};
@@ -75,31 +75,73 @@ fn hidden_suns(
     (ground, lit): (&Ground, &LitPiece),
     block: &QuadBlock,
 ) -> Option<Vec<Vec<PixelLanes>>> {
-    let points: Vec<_> =
-        block.pairs().map(|pair| places(&pair, ground, lit)).collect::<Option<_>>()?;
-    let of_lane =
-        |vectors: &Vectors, lane: usize| Vec3::from(vectors.map(|axis| axis.as_array()[lane]));
+    let normal = lit.normal.to_array().map(PixelLanes::splat);
+    let points: Vec<_> = block
+        .pairs()
+        .map(|pair| places(&pair, ground, &pair.lit()?, &normal))
+        .collect::<Option<_>>()?;
     let relief = points
         .iter()
         .zip(block.pairs())
         .flat_map(|(points, pair)| pair.covered().map(move |lane| of_lane(&points.relief, lane)));
     let polygon = of_lane(&points.first()?.polygon, 0);
     let receiver = Receiver::new(relief, lit.normal, polygon)?;
+    let suns = between(scene, occluders, &receiver)?;
+    let of_sun = |sun: &Hidden| points.iter().map(|p| sun.share(p, receiver.middle)).collect();
+    Some(suns.iter().map(of_sun).collect())
+}
+
+/// The triangles that may hide each of the suns from a receiver; `None` if there are none.
+fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<Vec<Hidden>> {
     let suns: Vec<_> = scene
         .lights
         .iter()
         .map(|light| {
             let Light::Sun { to_light, angular_size, .. } = *light else { return None };
             let disc = Disc::new(to_light.normalize_or_zero(), angular_size);
-            let triangles = occluders.between(&receiver, &disc);
+            let triangles = occluders.between(receiver, &disc);
             Some(Hidden { directions: disc.points(RAYS).collect(), triangles })
         })
         .collect::<Option<_>>()?;
-    if suns.iter().all(|sun| sun.triangles.is_empty()) {
-        return None;
+    suns.iter().any(|sun| !sun.triangles.is_empty()).then_some(suns)
+}
+
+/// [`hidden_suns`] of a block of a curved surface.
+pub(super) fn hidden_on_curved(
+    scene: &Scene,
+    occluders: &Occluders,
+    ground: &Ground,
+    block: &QuadBlock,
+) -> Option<Vec<Vec<PixelLanes>>> {
+    // View rays meet the relief between the polygon and the deepest that it may be.
+    let mut reach = f32::INFINITY;
+    let mut ends = Vec::with_capacity(16 * block.num_pairs());
+    for pair in block.pairs() {
+        let deep = Deep::new(&pair, ground, &pair.lit()?, &seen_normal(scene, &pair)?);
+        for lane in pair.covered() {
+            let polygon = of_lane(&deep.polygon, lane);
+            ends.extend([polygon, polygon + of_lane(&deep.way, lane)]);
+            reach = reach.min(deep.reach.as_array()[lane]);
+        }
     }
+    let receiver = Receiver::curved(ends.into_iter(), reach)?;
+    let suns = between(scene, occluders, &receiver)?;
+    let points: Vec<_> = block
+        .pairs()
+        .map(|pair| places(&pair, ground, &pair.lit()?, &seen_normal(scene, &pair)?))
+        .collect::<Option<_>>()?;
     let of_sun = |sun: &Hidden| points.iter().map(|p| sun.share(p, receiver.middle)).collect();
     Some(suns.iter().map(of_sun).collect())
+}
+
+/// The unit normals of pixels on the eye's side.
+fn seen_normal(scene: &Scene, pair: &QuadPair) -> Option<Vectors> {
+    let LitLanes { position, normal, tangent_u, tangent_v } = pair.lit()?;
+    Some(FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye).axes[2])
+}
+
+fn of_lane(vectors: &Vectors, lane: usize) -> Vec3 {
+    Vec3::from(vectors.map(|axis| axis.as_array()[lane]))
 }
 
 /// Where the pixels of a pair are in the world.
@@ -115,38 +157,51 @@ struct Places {
     reach: PixelLanes,
 }
 
-fn places(pair: &QuadPair, ground: &Ground, lit: &LitPiece) -> Option<Places> {
-    let LitLanes { position, tangent_u, tangent_v, .. } = pair.lit()?;
+/// The view rays of a pair below the polygon.
+struct Deep {
+    /// Where they pass it.
+    polygon: Vectors,
+    /// From there to the deepest relief.
+    way: Vectors,
+    /// See [`Places::reach`].
+    reach: PixelLanes,
+    /// The displacement in repeats.
+    along: [PixelLanes; 2],
+}
+
+impl Deep {
+    fn new(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Self {
+        let LitLanes { position, tangent_u, tangent_v, .. } = *lit;
+        let Some(field) = ground.prepared.field() else {
+            let zero = PixelLanes::ZERO;
+            return Self { polygon: position, way: [zero; 3], reach: zero, along: [zero; 2] };
+        };
+        let along = displacement(&pair.view(), field.relief_depth);
+        // The world length of a repeat, by which relief goes down.
+        let across = cross(&tangent_u, &tangent_v);
+        let repeat = dot(&across, &across).sqrt().sqrt();
+        let down = repeat * field.relief_depth;
+        let way =
+            [0, 1, 2].map(|i| tangent_u[i] * along[0] + tangent_v[i] * along[1] - down * normal[i]);
+        Self { polygon: position, way, reach: down * 2.0, along }
+    }
+}
+
+fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Option<Places> {
+    let Deep { polygon, way, reach, along } = Deep::new(pair, ground, lit, normal);
     // Pixels of a quad: lanes 0 and 1 side by side, 0 and 2 one above the other.
     let step = |by: usize| {
-        position.map(|axis| {
+        polygon.map(|axis| {
             let axis = axis.to_array();
             PixelLanes::new(std::array::from_fn(|lane| {
                 axis[lane / 4 * 4 + by] - axis[lane / 4 * 4]
             }))
         })
     };
-    let steps = [step(1), step(2)];
-    let Some(field) = ground.prepared.field() else {
-        return Some(Places {
-            relief: position,
-            polygon: position,
-            steps,
-            reach: PixelLanes::ZERO,
-        });
-    };
-    let along = displacement(&pair.view(), field.relief_depth);
-    let depth = march(field, &pair.uv, &along);
-    // The world length of a repeat, by which relief goes down.
-    let across = cross(&tangent_u, &tangent_v);
-    let repeat = dot(&across, &across).sqrt().sqrt();
-    let down = depth * repeat * field.relief_depth;
-    let relief = [0, 1, 2].map(|i| {
-        let moved = (tangent_u[i] * along[0] + tangent_v[i] * along[1]) * depth;
-        position[i] + moved - down * lit.normal[i]
-    });
-    let reach = repeat * (2.0 * field.relief_depth);
-    Some(Places { relief, polygon: position, steps, reach })
+    let field = ground.prepared.field();
+    let depth = field.map_or(PixelLanes::ZERO, |field| march(field, &pair.uv, &along));
+    let relief = [0, 1, 2].map(|i| polygon[i] + way[i] * depth);
+    Some(Places { relief, polygon, steps: [step(1), step(2)], reach })
 }
 
 impl Hidden {

@@ -26,7 +26,7 @@ pub(super) struct PatchLight<'a> {
     /// The `xi` and `q` around which numbers are linear.
     middle: [f32; 2],
     suns: Vec<PatchSun>,
-    sky: [[f32; 3]; 4],
+    sky: Option<[[f32; 3]; 4]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -103,7 +103,7 @@ impl<'a> PatchLight<'a> {
         });
         let suns = suns.collect();
         let axes = curved.mean_axes(picks);
-        let sky = linear_sky(curved.sky, axes).map(|c| c.to_array());
+        let sky = curved.sky.map(|sky| linear_sky(sky, axes).map(|c| c.to_array()));
         Self { rows, middle: fit.middle, suns, sky }
     }
 
@@ -127,15 +127,17 @@ impl<'a> PatchLight<'a> {
             LineLanes::from_i32x16(as_signed_words((word >> shift) & u32x16::splat(0xff)))
         };
         let [xi, p] = [xi - self.middle[0], p - self.middle[1]];
-        let [near, far] = bytes(SKY_PLANE);
         let mut sums = [LineLanes::ZERO; 3];
-        for (i, sky) in self.sky.iter().enumerate() {
-            let t =
-                between.mix(number(near, 8 * i as u32), number(far, 8 * i as u32)) * (1.0 / 255.0);
-            let t = if i == 1 || i == 2 { t * 2.0 - 1.0 } else { t };
-            (0..3).for_each(|c| sums[c] += t * sky[c]);
+        if let Some(sky) = &self.sky {
+            let [near, far] = bytes(SKY_PLANE);
+            for (i, sky) in sky.iter().enumerate() {
+                let shift = 8 * i as u32;
+                let t = between.mix(number(near, shift), number(far, shift)) * (1.0 / 255.0);
+                let t = if i == 1 || i == 2 { t * 2.0 - 1.0 } else { t };
+                (0..3).for_each(|c| sums[c] += t * sky[c]);
+            }
+            (0..3).for_each(|c| sums[c] = sums[c].fast_max(LineLanes::ZERO));
         }
-        (0..3).for_each(|c| sums[c] = sums[c].fast_max(LineLanes::ZERO));
         for sun in &self.suns {
             let [l0, l1, l2] = sun.to_light.map(|l| l.at(xi, p));
             let n_l = (normal[0] * l0 + normal[1] * l1 + normal[2] * l2).fast_max(LineLanes::ZERO);

@@ -8,7 +8,7 @@ use glam::Vec3;
 /// rounding makes of triangles that lie in it.
 const ROUNDING: f32 = 1e-5;
 
-/// A piece of a flat surface.
+/// A piece of a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
     /// The middle of a box around it.
@@ -19,18 +19,35 @@ pub struct Receiver {
     normal: Vec3,
     /// How far the polygon is above the middle.
     top: f32,
+    /// A triangle that light passes from behind hides nothing that is nearer to its plane.
+    reach: f32,
 }
 
 impl Receiver {
-    /// Of points of a relief, whose polygon has a unit normal and holds a point; `None` without
+    /// Of points of a relief on a flat piece, whose polygon has a unit normal and holds a point; `None` without
     /// points.
     pub fn new(points: impl Iterator<Item = Vec3>, normal: Vec3, polygon: Vec3) -> Option<Self> {
+        let all = Self::curved(points, 0.0)?;
+        Some(Self { normal, top: normal.dot(polygon - all.middle), ..all })
+    }
+
+    /// Of points around a relief on a curved piece; `None` without points. A triangle that light
+    /// passes from behind hides nothing that is nearer to its plane than `reach`.
+    pub fn curved(points: impl Iterator<Item = Vec3>, reach: f32) -> Option<Self> {
         let (min, max) = points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), point| {
             (min.min(point), max.max(point))
         });
         let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
-        let top = normal.dot(polygon - middle);
-        middle.is_finite().then_some(Self { middle, half, normal, top })
+        // Its polygons lie in no plane below which nothing hides.
+        let (normal, top) = (Vec3::ZERO, f32::NEG_INFINITY);
+        middle.is_finite().then_some(Self { middle, half, normal, top, reach })
+    }
+
+    /// Whether light passes a triangle, by its corners from the middle, from behind and near by.
+    fn is_left(&self, disc: &Disc, [a, b, c]: &[Vec3; 3]) -> bool {
+        let normal = (b - a).cross(c - a);
+        let farthest = a.dot(normal).abs() + self.half.dot(normal.abs());
+        disc.to_middle.dot(normal) > 0.0 && farthest <= self.reach * normal.length()
     }
 
     /// Whether something in a box, by its middle and half its sides from the receiver's middle, may
@@ -69,6 +86,7 @@ impl Occluders {
                 let distance = a.length().max(b.length()).max(c.length());
                 // Of its box a slanted triangle fills little, so its own height counts.
                 if height > receiver.top + ROUNDING * distance
+                    && !receiver.is_left(disc, &[a, b, c])
                     && receiver.may_be_hidden_by(disc, (min + max) * 0.5, (max - min) * 0.5)
                 {
                     found.push([a, b, c]);
