@@ -150,9 +150,10 @@ impl Baked {
         sides.any(|side| !side.apart.is_empty())
     }
 
-    /// Whether a mesh is not of flat pieces.
-    pub(crate) fn has_curved(&self) -> bool {
-        self.of_mesh.iter().any(|mesh| matches!(mesh, OfMesh::All(NONE)))
+    /// The meshes that are not of flat pieces.
+    pub(crate) fn curved<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a Mesh> {
+        let meshes = scene.meshes.iter().zip(&self.of_mesh);
+        meshes.filter(|(_, of)| matches!(of, OfMesh::All(NONE))).map(|(mesh, _)| mesh)
     }
 
     /// The group of a triangle, by the index of its mesh and in it; `None` where it is not baked.

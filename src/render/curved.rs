@@ -5,7 +5,6 @@
 
 use super::ground::{Ground, Swept};
 use super::shade::{ShadeScratch, Shader};
-use super::shadows::hidden_on_curved;
 use crate::light::{Curved, CurvedSun, Disc, FrameLanes, Slant};
 use crate::raster::{LitLanes, QuadBlock};
 use crate::scene::{Light, Scene, Sky};
@@ -23,8 +22,7 @@ impl Shader<'_> {
         scratch: &mut ShadeScratch,
         colors: &mut Vec<[PixelLanes; 3]>,
     ) {
-        let occluders = self.prepared.occluders(self.scene);
-        let hidden = hidden_on_curved(self.scene, occluders, ground, block).unwrap_or_default();
+        let hidden = self.hidden_on_curved(ground, block);
         // Find the suns that reach all of the block, and those that reach a part.
         let (mut whole, mut parts) = (all, Vec::new());
         for (i, hidden) in hidden.iter().enumerate() {

@@ -3,7 +3,8 @@
 use super::baked::Baked;
 use super::ground::{Ground, Swept};
 use crate::filter::Prepared;
-use crate::light::exact::Occluders;
+use crate::light::Disc;
+use crate::light::exact::{Ceiling, Occluders};
 use crate::light::reflection::Reflectance;
 use crate::scene::{Light, Scene};
 use crate::settings::{Lighting, Settings};
@@ -30,6 +31,8 @@ pub(crate) struct PreparedScene {
     reflectance: OnceLock<Reflectance>,
     /// What the truth's light and shadows ask for.
     occluders: OnceLock<Occluders>,
+    /// What curved surfaces ask for: of each sun.
+    ceilings: OnceLock<Vec<Ceiling>>,
 }
 
 impl PreparedScene {
@@ -68,8 +71,8 @@ impl PreparedScene {
             })
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
-        let (reflectance, occluders) = Default::default();
-        Self { surfaces, flat, of_material, baked: None, reflectance, occluders }
+        let (reflectance, occluders, ceilings) = Default::default();
+        Self { surfaces, flat, of_material, baked: None, reflectance, occluders, ceilings }
     }
 
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
@@ -90,10 +93,17 @@ impl PreparedScene {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
             baked.light(scene, |material| self.of_material(material, settings.parallax));
-            if baked.has_shadows() || baked.has_curved() {
+            if baked.has_shadows() {
                 self.occluders(scene);
             }
+            let curved = baked.curved(scene).map(|mesh| mesh.material).collect::<Vec<_>>();
             self.baked = Some((settings.parallax, baked));
+            if !curved.is_empty() && settings.filter.traits().asks_for_lights {
+                self.ceilings(scene);
+                for material in curved {
+                    self.of_material(material, settings.parallax).map(Prepared::horizons);
+                }
+            }
         } else {
             self.baked = None;
         }
@@ -116,6 +126,24 @@ impl PreparedScene {
     /// The triangles of the scene that this was made for.
     pub(crate) fn occluders(&self, scene: &Scene) -> &Occluders {
         self.occluders.get_or_init(|| Occluders::new(scene))
+    }
+
+    /// What may hide each sun from curved surfaces; nothing else than suns shines there.
+    pub(crate) fn ceilings(&self, scene: &Scene) -> &[Ceiling] {
+        self.ceilings.get_or_init(|| {
+            let Some((_, baked)) = &self.baked else { return Vec::new() };
+            let triangles = self.occluders(scene).triangles();
+            let ceiling = |light: &Light| {
+                let Light::Sun { to_light, angular_size, .. } = *light else { return None };
+                let disc = Disc::new(to_light.normalize_or_zero(), angular_size);
+                Some(Ceiling::new(
+                    disc,
+                    triangles.iter(),
+                    baked.curved(scene).flat_map(|mesh| mesh.positions.iter().copied()),
+                ))
+            };
+            scene.lights.iter().filter_map(ceiling).collect()
+        })
     }
 
     /// The group in which a triangle is shaded, by the index of its mesh and in it.

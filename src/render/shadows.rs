@@ -15,12 +15,12 @@
 
 use super::ground::{Ground, LitPiece};
 use super::shade::{ShadeScratch, Shader};
-use crate::light::exact::{Occluders, Receiver};
+use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
 use crate::light::{Disc, FrameLanes};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
 use crate::relief::{displacement, march};
 use crate::scene::{Light, Scene};
-use crate::simd::PixelLanes;
+use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
 
 /// Rays of a pixel to each sun; a square number.
@@ -39,6 +39,9 @@ struct Hidden {
     directions: Vec<Vec3>,
     /// From the block's middle.
     triangles: Vec<[Vec3; 3]>,
+    /// Two axes across the light, and how far each triangle reaches along them, widened by the disc.
+    across: [Vec3; 2],
+    outlines: Vec<[[f32; 2]; 2]>,
 }
 
 impl Shader<'_> {
@@ -78,7 +81,7 @@ fn hidden_suns(
     let normal = lit.normal.to_array().map(PixelLanes::splat);
     let points: Vec<_> = block
         .pairs()
-        .map(|pair| places(&pair, ground, &pair.lit()?, &normal))
+        .map(|pair| Some(places(&pair, ground, &pair.lit()?, &normal)))
         .collect::<Option<_>>()?;
     let relief = points
         .iter()
@@ -100,38 +103,71 @@ fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<
             let Light::Sun { to_light, angular_size, .. } = *light else { return None };
             let disc = Disc::new(to_light.normalize_or_zero(), angular_size);
             let triangles = occluders.between(receiver, &disc);
-            Some(Hidden { directions: disc.points(RAYS).collect(), triangles })
+            Some(Hidden::new(&disc, triangles))
         })
         .collect::<Option<_>>()?;
+    if std::env::var("DBG").is_ok() {
+        eprintln!("L {}", suns[0].triangles.len());
+    }
     suns.iter().any(|sun| !sun.triangles.is_empty()).then_some(suns)
 }
 
-/// [`hidden_suns`] of a block of a curved surface.
-pub(super) fn hidden_on_curved(
-    scene: &Scene,
+impl Shader<'_> {
+    /// The parts of each sun that are not seen from the pixels of a block of a curved surface: sun
+    /// by sun, pair by pair, or nothing where nothing is in the way.
+    pub(super) fn hidden_on_curved(
+        &self,
+        ground: &Ground,
+        block: &QuadBlock,
+    ) -> Vec<Vec<PixelLanes>> {
+        let Some(points) = block
+            .pairs()
+            .map(|pair| {
+                let normal = seen_normal(self.scene, &pair)?;
+                Some((places(&pair, ground, &pair.lit()?, &normal), normal))
+            })
+            .collect::<Option<Vec<_>>>()
+        else {
+            return Vec::new();
+        };
+        let occluders = self.prepared.occluders(self.scene);
+        let ceilings = self.prepared.ceilings(self.scene);
+        let suns = ceilings.iter().map(|ceiling| hidden_sun(occluders, ceiling, &points));
+        suns.collect()
+    }
+}
+
+/// The parts of a sun that are not seen from places on a curved surface, whose unit normals are
+/// given.
+fn hidden_sun(
     occluders: &Occluders,
-    ground: &Ground,
-    block: &QuadBlock,
-) -> Option<Vec<Vec<PixelLanes>>> {
-    // View rays meet the relief between the polygon and the deepest that it may be.
-    let mut reach = f32::INFINITY;
-    let mut ends = Vec::with_capacity(16 * block.num_pairs());
-    for pair in block.pairs() {
-        let deep = Deep::new(&pair, ground, &pair.lit()?, &seen_normal(scene, &pair)?);
-        for lane in pair.covered() {
-            let polygon = of_lane(&deep.polygon, lane);
-            ends.extend([polygon, polygon + of_lane(&deep.way, lane)]);
-            reach = reach.min(deep.reach.as_array()[lane]);
+    ceiling: &Ceiling,
+    points: &[(Places, Vectors)],
+) -> Vec<PixelLanes> {
+    let mut hidden = vec![PixelLanes::ZERO; points.len()];
+    let [x, y, up] = ceiling.axes();
+    let mut open = Vec::new();
+    let (mut normal, mut ends, mut reach) = (Vec3::ZERO, Vec::new(), f32::INFINITY);
+    for (i, (places, normals)) in points.iter().enumerate() {
+        let facing = along(normals, up).to_array();
+        let lanes = || set_bits(places.covered);
+        // What turns away from a sun is dark without any shadow.
+        if lanes().all(|lane| facing[lane] <= 0.0) || ceiling.is_clear(&places.spots([x, y, up])) {
+            continue;
+        }
+        open.push(i);
+        for lane in lanes() {
+            normal += of_lane(normals, lane);
+            ends.push(of_lane(&places.relief, lane));
+            reach = reach.min(places.reach.as_array()[lane]);
         }
     }
-    let receiver = Receiver::curved(ends.into_iter(), reach)?;
-    let suns = between(scene, occluders, &receiver)?;
-    let points: Vec<_> = block
-        .pairs()
-        .map(|pair| places(&pair, ground, &pair.lit()?, &seen_normal(scene, &pair)?))
-        .collect::<Option<_>>()?;
-    let of_sun = |sun: &Hidden| points.iter().map(|p| sun.share(p, receiver.middle)).collect();
-    Some(suns.iter().map(of_sun).collect())
+    if let Some(receiver) = Receiver::curved(&ends, normal.normalize_or_zero(), reach) {
+        let disc = ceiling.disc();
+        let sun = Hidden::new(&disc, occluders.between(&receiver, &disc));
+        open.into_iter().for_each(|i| hidden[i] = sun.share(&points[i].0, receiver.middle));
+    }
+    hidden
 }
 
 /// The unit normals of pixels on the eye's side.
@@ -155,63 +191,95 @@ struct Places {
     /// How far above a ray's start a triangle hides nothing that it passes from behind: its own
     /// polygon, or one that stands on it. See [`LightRay::reach`](crate::light::exact::LightRay).
     reach: PixelLanes,
+    /// Which of the pixels are covered.
+    covered: u8,
 }
 
-/// The view rays of a pair below the polygon.
-struct Deep {
-    /// Where they pass it.
-    polygon: Vectors,
-    /// From there to the deepest relief.
-    way: Vectors,
-    /// See [`Places::reach`].
-    reach: PixelLanes,
-    /// The displacement in repeats.
-    along: [PixelLanes; 2],
-}
+impl Places {
+    /// How far along an axis points over the covered pixels around `from` lie.
+    fn range(&self, from: &Vectors, axis: Vec3) -> [f32; 2] {
+        let half = (along(&self.steps[0], axis).abs() + along(&self.steps[1], axis).abs()) * 0.5;
+        let middle = along(from, axis);
+        let [least, most] = [middle - half, middle + half].map(PixelLanes::to_array);
+        set_bits(self.covered)
+            .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
+    }
 
-impl Deep {
-    fn new(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Self {
-        let LitLanes { position, tangent_u, tangent_v, .. } = *lit;
-        let Some(field) = ground.prepared.field() else {
-            let zero = PixelLanes::ZERO;
-            return Self { polygon: position, way: [zero; 3], reach: zero, along: [zero; 2] };
-        };
-        let along = displacement(&pair.view(), field.relief_depth);
-        // The world length of a repeat, by which relief goes down.
-        let across = cross(&tangent_u, &tangent_v);
-        let repeat = dot(&across, &across).sqrt().sqrt();
-        let down = repeat * field.relief_depth;
-        let way =
-            [0, 1, 2].map(|i| tangent_u[i] * along[0] + tangent_v[i] * along[1] - down * normal[i]);
-        Self { polygon: position, way, reach: down * 2.0, along }
+    /// All of them by the axes across a light and to it.
+    fn spots(&self, [x, y, up]: [Vec3; 3]) -> Spots {
+        let reach = self.reach.to_array();
+        Spots {
+            across: [x, y].map(|axis| self.range(&self.relief, axis)),
+            height: self.range(&self.relief, up)[0],
+            reach: set_bits(self.covered).fold(f32::MAX, |least, lane| least.min(reach[lane])),
+        }
     }
 }
 
-fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Option<Places> {
-    let Deep { polygon, way, reach, along } = Deep::new(pair, ground, lit, normal);
+fn along(v: &Vectors, axis: Vec3) -> PixelLanes {
+    v[0] * axis.x + v[1] * axis.y + v[2] * axis.z
+}
+
+fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Places {
+    let LitLanes { position, tangent_u, tangent_v, .. } = *lit;
     // Pixels of a quad: lanes 0 and 1 side by side, 0 and 2 one above the other.
     let step = |by: usize| {
-        polygon.map(|axis| {
+        position.map(|axis| {
             let axis = axis.to_array();
             PixelLanes::new(std::array::from_fn(|lane| {
                 axis[lane / 4 * 4 + by] - axis[lane / 4 * 4]
             }))
         })
     };
-    let field = ground.prepared.field();
-    let depth = field.map_or(PixelLanes::ZERO, |field| march(field, &pair.uv, &along));
-    let relief = [0, 1, 2].map(|i| polygon[i] + way[i] * depth);
-    Some(Places { relief, polygon, steps: [step(1), step(2)], reach })
+    let all = Places {
+        relief: position,
+        polygon: position,
+        steps: [step(1), step(2)],
+        reach: PixelLanes::ZERO,
+        covered: pair.covered_bits(),
+    };
+    let Some(field) = ground.prepared.field() else { return all };
+    let along = displacement(&pair.view(), field.relief_depth);
+    let depth = march(field, &pair.uv, &along);
+    // The world length of a repeat, by which relief goes down.
+    let across = cross(&tangent_u, &tangent_v);
+    let repeat = dot(&across, &across).sqrt().sqrt();
+    let down = depth * repeat * field.relief_depth;
+    let relief = [0, 1, 2].map(|i| {
+        let moved = (tangent_u[i] * along[0] + tangent_v[i] * along[1]) * depth;
+        position[i] + moved - down * normal[i]
+    });
+    Places { relief, reach: repeat * (2.0 * field.relief_depth), ..all }
 }
 
 impl Hidden {
+    /// Of a sun's disc and the triangles that may hide it, from a block's middle.
+    fn new(disc: &Disc, triangles: Vec<[Vec3; 3]>) -> Self {
+        let across = <[Vec3; 2]>::from(disc.to_middle.any_orthonormal_pair());
+        let outline = |triangle: &[Vec3; 3]| {
+            // The farther a triangle is, the farther apart are the rays to all of the disc.
+            let far = triangle.iter().fold(0.0_f32, |far, corner| far.max(corner.length()));
+            let more = far * disc.radius;
+            across.map(|axis| {
+                let [a, b, c] = triangle.map(|corner| axis.dot(corner));
+                [a.min(b).min(c) - more, a.max(b).max(c) + more]
+            })
+        };
+        let outlines = triangles.iter().map(outline).collect();
+        Self { directions: disc.points(RAYS).collect(), across, triangles, outlines }
+    }
+
     /// The part of the sun that pixels do not see.
     fn share(&self, places: &Places, middle: Vec3) -> PixelLanes {
         if self.triangles.is_empty() {
             return PixelLanes::ZERO;
         }
         let from = [0, 1, 2].map(|i| places.relief[i] - middle[i]);
-        let hidden = |sum, ray| sum + self.is_hidden(&from, places, ray);
+        let near = self.near(&from, places);
+        if near.is_empty() {
+            return PixelLanes::ZERO;
+        }
+        let hidden = |sum, ray| sum + self.is_hidden(&near, &from, places, ray);
         let count = FIRST.into_iter().fold(PixelLanes::ZERO, hidden);
         let most = FIRST.len() as f32;
         let is_edge = count.simd_gt(PixelLanes::ZERO) & count.simd_lt(PixelLanes::splat(most));
@@ -222,17 +290,37 @@ impl Hidden {
         is_edge.select(all * (1.0 / RAYS as f32), count * (1.0 / most))
     }
 
+    /// The triangles that cover a pixel of a pair as the sun sees them.
+    fn near(&self, from: &Vectors, places: &Places) -> Vec<&[Vec3; 3]> {
+        let ranges = self.across.map(|axis| places.range(from, axis));
+        let is_near = |outline: &[[f32; 2]; 2]| {
+            outline.iter().zip(&ranges).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1])
+        };
+        let all = self.triangles.iter().zip(&self.outlines);
+        all.filter(|(_, outline)| is_near(outline)).map(|(triangle, _)| triangle).collect()
+    }
+
     /// 1 where a triangle hides a point of the sun, else 0.
-    fn is_hidden(&self, from: &Vectors, places: &Places, ray: usize) -> PixelLanes {
+    fn is_hidden(
+        &self,
+        triangles: &[&[Vec3; 3]],
+        from: &Vectors,
+        places: &Places,
+        ray: usize,
+    ) -> PixelLanes {
         // Over the pixel in rows and columns, over the disc in another order, so that no part of
         // the one goes with a part of the other.
         const SIDE: usize = 4;
         let [x, y] = [ray % SIDE, ray / SIDE].map(|i| (i as f32 + 0.5) / SIDE as f32 - 0.5);
         let direction = self.directions[ray * 7 % RAYS];
         let from = [0, 1, 2].map(|i| from[i] + places.steps[0][i] * x + places.steps[1][i] * y);
-        let hits = self.triangles.iter().fold(PixelLanes::ZERO, |hits, triangle| {
-            hits | passes(&from, direction, triangle, places.reach)
-        });
+        let mut hits = PixelLanes::ZERO;
+        for triangle in triangles {
+            hits |= passes(&from, direction, triangle, places.reach);
+            if hits.all() {
+                break;
+            }
+        }
         hits.select(PixelLanes::ONE, PixelLanes::ZERO)
     }
 }
