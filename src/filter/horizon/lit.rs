@@ -7,7 +7,7 @@
 use super::pixels::PixelOnLines;
 use crate::light::{Curved, NUM_AZIMUTHS, SKY_PLANE, Slant, linear_sky};
 use crate::relief::directions::diamond_angle;
-use crate::simd::{Between, LineLanes, as_signed_words, u32x16};
+use crate::simd::{BETWEEN_SCALE, Between, LineLanes, u32x16};
 use crate::texture::Rows;
 
 /// A number that is linear in the line and the seen place.
@@ -22,11 +22,19 @@ struct Linear {
 #[derive(Clone, Debug)]
 pub(super) struct PatchLight<'a> {
     /// The horizons of the patch's level.
-    rows: &'a Rows,
+    pub(super) rows: &'a Rows,
     /// The `xi` and `q` around which numbers are linear.
     middle: [f32; 2],
     suns: Vec<PatchSun>,
-    sky: Option<[[f32; 3]; 4]>,
+    sky: Option<PatchSky>,
+}
+
+/// What the sky sends, linear in the direction.
+#[derive(Clone, Copy, Debug)]
+struct PatchSky {
+    constant: [f32; 3],
+    /// Along u, along v and off the surface; `None` where it is the same from everywhere.
+    slopes: Option<[[f32; 3]; 3]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -103,50 +111,57 @@ impl<'a> PatchLight<'a> {
         });
         let suns = suns.collect();
         let axes = curved.mean_axes(picks);
-        let sky = curved.sky.map(|sky| linear_sky(sky, axes).map(|c| c.to_array()));
+        let sky = curved.sky.map(|sky| {
+            let [constant, slopes @ ..] = linear_sky(sky, axes).map(|c| c.to_array());
+            PatchSky { constant, slopes: (!sky.is_uniform()).then_some(slopes) }
+        });
         Self { rows, middle: fit.middle, suns, sky }
     }
 
     /// What a white surface shows of the lights where lines cross a row whose words of horizons
-    /// begin at `start`.
+    /// begin at `start`; `normals` are the words of the texels' normals there.
     #[inline(always)]
     pub(super) fn at(
         &self,
         start: usize,
-        pitch: usize,
         between: &Between,
         [xi, p]: [LineLanes; 2],
-        normal: &[LineLanes; 3],
+        normals: [u32x16; 2],
     ) -> [LineLanes; 3] {
-        // The same row and column among rows of another pitch.
-        let (row, column) = (start / pitch, start % pitch);
-        let start = row * self.rows.pitch() + column;
         let (words, stride) = (self.rows.words(), self.rows.stride());
-        let bytes = |plane: usize| between.words_at(words, start + plane * stride);
-        let number = |word: u32x16, shift: u32| {
-            LineLanes::from_i32x16(as_signed_words((word >> shift) & u32x16::splat(0xff)))
-        };
         let [xi, p] = [xi - self.middle[0], p - self.middle[1]];
         let mut sums = [LineLanes::ZERO; 3];
         if let Some(sky) = &self.sky {
-            let [near, far] = bytes(SKY_PLANE);
-            for (i, sky) in sky.iter().enumerate() {
-                let shift = 8 * i as u32;
-                let t = between.mix(number(near, shift), number(far, shift)) * (1.0 / 255.0);
-                let t = if i == 1 || i == 2 { t * 2.0 - 1.0 } else { t };
-                (0..3).for_each(|c| sums[c] += t * sky[c]);
+            let word = between.words_at(words, start + SKY_PLANE * stride);
+            let t = |i: u32| between.bits_of(word, 8 * i, 0xff) * (1.0 / (255.0 * BETWEEN_SCALE));
+            let all = t(0);
+            (0..3).for_each(|c| sums[c] = all * sky.constant[c]);
+            if let Some(slopes) = &sky.slopes {
+                let [x, y, z] = [t(1) * 2.0 - 1.0, t(2) * 2.0 - 1.0, t(3)];
+                for c in 0..3 {
+                    let more = x * slopes[0][c] + y * slopes[1][c] + z * slopes[2][c];
+                    sums[c] = (sums[c] + more).fast_max(LineLanes::ZERO);
+                }
             }
-            (0..3).for_each(|c| sums[c] = sums[c].fast_max(LineLanes::ZERO));
         }
+        if self.suns.is_empty() {
+            return sums;
+        }
+        let normal = normals_between(between, normals);
         for sun in &self.suns {
             let [l0, l1, l2] = sun.to_light.map(|l| l.at(xi, p));
             let n_l = (normal[0] * l0 + normal[1] * l1 + normal[2] * l2).fast_max(LineLanes::ZERO);
-            let [a, b] = sun.azimuths.map(|(plane, shift)| {
-                let [near, far] = bytes(plane);
-                between.mix(number(near, shift), number(far, shift))
-            });
+            let [(plane, shift), (next_plane, next_shift)] = sun.azimuths;
+            let word = between.words_at(words, start + plane * stride);
+            let next = if plane == next_plane {
+                word
+            } else {
+                between.words_at(words, start + next_plane * stride)
+            };
+            let a = between.bits_of(word, shift, 0xff);
+            let b = between.bits_of(next, next_shift, 0xff);
             let part = sun.part.at(xi, p).fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
-            let horizon = (a + (b - a) * part) * (1.0 / 255.0);
+            let horizon = (a + (b - a) * part) * (1.0 / (255.0 * BETWEEN_SCALE));
             let lit = (sun.height.at(xi, p) - horizon) * sun.inverse_width + 0.5;
             let lit = n_l * lit.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
             (0..3).for_each(|c| sums[c] += lit * sun.intensity[c]);
@@ -160,6 +175,16 @@ impl Linear {
     fn at(&self, xi: LineLanes, p: LineLanes) -> LineLanes {
         xi * self.per_line + p * self.per_row + self.middle
     }
+}
+
+/// The normals of texels where lines cross a row, from their packed words.
+#[inline(always)]
+fn normals_between(between: &Between, words: [u32x16; 2]) -> [LineLanes; 3] {
+    let part = |first: u32, half: u32| {
+        let unit = 1.0 / (half as f32 * BETWEEN_SCALE);
+        between.bits_of(words, first, 2 * half + 1) * unit - 1.0
+    };
+    [part(0, 1023), part(11, 1023), part(22, 511)]
 }
 
 /// Least squares over the places of pixels.
