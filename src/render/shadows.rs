@@ -114,66 +114,100 @@ fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<
 
 impl Shader<'_> {
     /// The parts of each sun that are not seen from the pixels of a block of a curved surface: sun
-    /// by sun, pair by pair, or nothing where nothing is in the way.
+    /// by sun, pair by pair.
     pub(super) fn hidden_on_curved(
         &self,
         ground: &Ground,
         block: &QuadBlock,
     ) -> Vec<Vec<PixelLanes>> {
-        let Some(points) = block
-            .pairs()
-            .map(|pair| {
-                let normal = seen_normal(self.scene, &pair)?;
-                Some((places(&pair, ground, &pair.lit()?, &normal), normal))
-            })
-            .collect::<Option<Vec<_>>>()
-        else {
-            return Vec::new();
-        };
         let occluders = self.prepared.occluders(self.scene);
-        let ceilings = self.prepared.ceilings(self.scene);
-        let suns = ceilings.iter().map(|ceiling| hidden_sun(occluders, ceiling, &points));
-        suns.collect()
+        let rays = block.pairs().filter_map(|pair| ViewRays::new(self.scene, ground, &pair));
+        let rays: Vec<_> = rays.collect();
+        let of_sun = |ceiling: &Ceiling| {
+            let mut hidden = vec![PixelLanes::ZERO; rays.len()];
+            let up = ceiling.axes()[2];
+            let mut open = Vec::new();
+            for (i, rays) in rays.iter().enumerate() {
+                // What turns away from a sun is dark without any shadow.
+                let facing = along(&rays.normal, up).to_array();
+                let is_lit = set_bits(rays.covered).any(|lane| facing[lane] > 0.0);
+                if is_lit && !ceiling.is_clear(&rays.spots(ceiling.axes())) {
+                    let pair = block.pair(i);
+                    if let Some(lit) = pair.lit() {
+                        open.push((i, places(&pair, ground, &lit, &rays.normal), rays.normal));
+                    }
+                }
+            }
+            hide(occluders, ceiling, &open, &mut hidden);
+            hidden
+        };
+        self.prepared.ceilings(self.scene).iter().map(of_sun).collect()
     }
 }
 
-/// The parts of a sun that are not seen from places on a curved surface, whose unit normals are
-/// given.
-fn hidden_sun(
+/// Sets the parts of a sun that are not seen from places of pairs, by their numbers, whose unit
+/// normals are given.
+fn hide(
     occluders: &Occluders,
     ceiling: &Ceiling,
-    points: &[(Places, Vectors)],
-) -> Vec<PixelLanes> {
-    let mut hidden = vec![PixelLanes::ZERO; points.len()];
-    let [x, y, up] = ceiling.axes();
-    let mut open = Vec::new();
-    let (mut normal, mut ends, mut reach) = (Vec3::ZERO, Vec::new(), f32::INFINITY);
-    for (i, (places, normals)) in points.iter().enumerate() {
-        let facing = along(normals, up).to_array();
-        let lanes = || set_bits(places.covered);
-        // What turns away from a sun is dark without any shadow.
-        if lanes().all(|lane| facing[lane] <= 0.0) || ceiling.is_clear(&places.spots([x, y, up])) {
-            continue;
-        }
-        open.push(i);
-        for lane in lanes() {
+    pairs: &[(usize, Places, Vectors)],
+    hidden: &mut [PixelLanes],
+) {
+    let (mut normal, mut points, mut reach) = (Vec3::ZERO, Vec::new(), f32::INFINITY);
+    for (_, places, normals) in pairs {
+        for lane in set_bits(places.covered) {
             normal += of_lane(normals, lane);
-            ends.push(of_lane(&places.relief, lane));
+            points.push(of_lane(&places.relief, lane));
             reach = reach.min(places.reach.as_array()[lane]);
         }
     }
-    if let Some(receiver) = Receiver::curved(&ends, normal.normalize_or_zero(), reach) {
-        let disc = ceiling.disc();
-        let sun = Hidden::new(&disc, occluders.between(&receiver, &disc));
-        open.into_iter().for_each(|i| hidden[i] = sun.share(&points[i].0, receiver.middle));
-    }
-    hidden
+    let Some(receiver) = Receiver::curved(&points, normal.normalize_or_zero(), reach) else {
+        return;
+    };
+    let disc = ceiling.disc();
+    let sun = Hidden::new(&disc, occluders.between(&receiver, &disc));
+    pairs.iter().for_each(|(i, places, _)| hidden[*i] = sun.share(places, receiver.middle));
 }
 
-/// The unit normals of pixels on the eye's side.
-fn seen_normal(scene: &Scene, pair: &QuadPair) -> Option<Vectors> {
-    let LitLanes { position, normal, tangent_u, tangent_v } = pair.lit()?;
-    Some(FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye).axes[2])
+/// The view rays of a pair on a curved surface, between the polygon and the deepest relief.
+struct ViewRays {
+    /// Where they pass the polygon, and from there down.
+    polygon: Vectors,
+    way: Vectors,
+    /// Unit normals on the eye's side.
+    normal: Vectors,
+    reach: PixelLanes,
+    covered: u8,
+}
+
+impl ViewRays {
+    fn new(scene: &Scene, ground: &Ground, pair: &QuadPair) -> Option<Self> {
+        let LitLanes { position, normal, tangent_u, tangent_v } = pair.lit()?;
+        let frame = FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
+        let normal = frame.axes[2];
+        let relief_depth = ground.prepared.surface().relief_depth();
+        let moved = displacement(&pair.view(), relief_depth);
+        let across = cross(&tangent_u, &tangent_v);
+        let down = dot(&across, &across).sqrt().sqrt() * relief_depth;
+        let way =
+            [0, 1, 2].map(|i| tangent_u[i] * moved[0] + tangent_v[i] * moved[1] - down * normal[i]);
+        let covered = pair.covered_bits();
+        Some(Self { polygon: position, way, normal, reach: down * 2.0, covered })
+    }
+
+    /// All of their points by the axes across a light and to it.
+    fn spots(&self, axes: [Vec3; 3]) -> Spots {
+        let [x, y, up] = axes.map(|axis| {
+            let (from, way) = (along(&self.polygon, axis), along(&self.way, axis));
+            let ends = [from.fast_min(from + way), from.fast_max(from + way)];
+            let [least, most] = ends.map(PixelLanes::to_array);
+            set_bits(self.covered)
+                .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
+        });
+        let reach = self.reach.to_array();
+        let reach = set_bits(self.covered).fold(f32::MAX, |least, lane| least.min(reach[lane]));
+        Spots { across: [x, y], height: up[0], reach }
+    }
 }
 
 fn of_lane(vectors: &Vectors, lane: usize) -> Vec3 {
@@ -203,16 +237,6 @@ impl Places {
         let [least, most] = [middle - half, middle + half].map(PixelLanes::to_array);
         set_bits(self.covered)
             .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
-    }
-
-    /// All of them by the axes across a light and to it.
-    fn spots(&self, [x, y, up]: [Vec3; 3]) -> Spots {
-        let reach = self.reach.to_array();
-        Spots {
-            across: [x, y].map(|axis| self.range(&self.relief, axis)),
-            height: self.range(&self.relief, up)[0],
-            reach: set_bits(self.covered).fold(f32::MAX, |least, lane| least.min(reach[lane])),
-        }
     }
 }
 
