@@ -1,7 +1,6 @@
 //! Lights as eight pixels of a curved surface see them.
 
 use super::disc::spiral;
-use crate::scene::Sky;
 use crate::simd::PixelLanes;
 use glam::Vec3;
 
@@ -33,8 +32,9 @@ pub struct Slant {
 pub struct Curved<'a> {
     /// The suns.
     pub suns: &'a [CurvedSun],
-    /// The sky, if it is one of them.
-    pub sky: Option<&'a Sky>,
+    /// What of the sky gets to the lanes of each vector past all meshes, in the world's axes; nothing
+    /// where the sky is not one of the lights.
+    pub skies: &'a [[LinearSky; 8]],
     /// How each vector of pixels lies.
     pub frames: &'a [FrameLanes],
     /// How each sun shines on the first vector, on the second, and so on.
@@ -56,6 +56,17 @@ impl<'a> Curved<'a> {
         &self.slants[vector * self.suns.len() + sun]
     }
 
+    /// The sky at a picked pixel: vector times 8 plus lane.
+    pub(crate) fn sky(&self, pick: u8) -> &'a LinearSky {
+        &self.skies[usize::from(pick / 8)][usize::from(pick % 8)]
+    }
+
+    /// The normal at a picked pixel.
+    pub(crate) fn normal(&self, pick: u8) -> Vec3 {
+        let lanes = &self.frames[usize::from(pick / 8)].axes[2];
+        Vec3::from(lanes.map(|c| c.as_array()[usize::from(pick % 8)]))
+    }
+
     /// The mean axes of picked pixels: vector times 8 plus lane.
     pub(crate) fn mean_axes(&self, picks: &[u8]) -> [Vec3; 3] {
         let axes = picks.iter().map(|pick| {
@@ -73,10 +84,21 @@ impl<'a> Curved<'a> {
         let suns = self.suns.len();
         Self {
             frames: &self.frames[first..first + num],
+            skies: self.skies.get(first..first + num).unwrap_or_default(),
             slants: &self.slants[first * suns..(first + num) * suns],
             ..*self
         }
     }
+}
+
+/// What comes from the directions that a surface sees, as `constant + slopes . l` of a unit
+/// direction `l`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinearSky {
+    /// Linear RGB.
+    pub constant: Vec3,
+    /// The same, by axis.
+    pub slopes: [Vec3; 3],
 }
 
 impl FrameLanes {
@@ -114,31 +136,51 @@ fn finite(lanes: PixelLanes) -> PixelLanes {
     lanes.is_finite().select(lanes, PixelLanes::ZERO)
 }
 
-/// What a sky sends to a place whose unit axes are given, as `c0 + c.l` of a unit direction `l` in
-/// them: the nearest of that form over the half space, weighed by the cosine.
-pub fn linear_sky(sky: &Sky, axes: [Vec3; 3]) -> [Vec3; 4] {
-    if let Sky::Color(color) = sky {
-        return [*color, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO];
-    }
-    const PAIRS: usize = 32;
-    let mut sums = [Vec3::ZERO; 4];
-    let [x_axis, y_axis] = <[Vec3; 2]>::from(axes[2].any_orthonormal_pair());
-    for (turn, share) in spiral(PAIRS) {
-        let [cos, sin] = turn.map(|c| c as f32);
-        let share = share as f32;
-        let up = (1.0 - share).sqrt();
-        for sign in [1.0, -1.0] {
-            let across = (x_axis * cos + y_axis * sin) * (share.sqrt() * sign);
-            let direction = across + axes[2] * up;
-            let color = sky.radiance(direction) * (0.5 / PAIRS as f32);
-            let of = [1.0, axes[0].dot(across), axes[1].dot(across), up];
-            sums.iter_mut().zip(of).for_each(|(sum, of)| *sum += color * of);
+impl LinearSky {
+    /// The nearest to what comes from unit directions over the half space around a unit normal,
+    /// weighed by the cosine to it.
+    pub fn new(normal: Vec3, from: impl Fn(Vec3) -> Vec3) -> Self {
+        /// Pairs of directions that lie opposite each other.
+        const PAIRS: usize = 32;
+        let [x, y] = <[Vec3; 2]>::from(normal.any_orthonormal_pair());
+        let mut sums = [Vec3::ZERO; 4];
+        for (turn, share) in spiral(PAIRS) {
+            let [cos, sin] = turn.map(|c| c as f32 * (share as f32).sqrt());
+            let up = (1.0 - share as f32).sqrt();
+            for [cos, sin] in [[cos, sin], [-cos, -sin]] {
+                let color = from(x * cos + y * sin + normal * up) * (0.5 / PAIRS as f32);
+                let of = [1.0, cos, sin, up];
+                sums.iter_mut().zip(of).for_each(|(sum, of)| *sum += color * of);
+            }
         }
+        // Means of products of the four over such directions: 1, 1/4, 1/4, 1/2, and 2/3 of 1 and up.
+        let [all, of_x, of_y, up] = sums;
+        let of_up = (up - all * (2.0 / 3.0)) * 18.0;
+        let (of_x, of_y) = (of_x * 4.0, of_y * 4.0);
+        let slopes = [0, 1, 2].map(|i| of_x * x[i] + of_y * y[i] + of_up * normal[i]);
+        Self { constant: all - of_up * (2.0 / 3.0), slopes }
     }
-    // Means of products of the four over such directions: 1, 1/4, 1/4, 1/2, and 2/3 of 1 and up.
-    let [all, x, y, up] = sums;
-    let of_up = (up - all * (2.0 / 3.0)) * 18.0;
-    [all - of_up * (2.0 / 3.0), x * 4.0, y * 4.0, of_up]
+
+    /// The sum of some by their shares.
+    pub fn blend(terms: impl Iterator<Item = (Self, f32)>) -> Self {
+        terms.fold(Self::default(), |sum, (sky, share)| Self {
+            constant: sum.constant + sky.constant * share,
+            slopes: [0, 1, 2].map(|i| sum.slopes[i] + sky.slopes[i] * share),
+        })
+    }
+
+    /// The same in other axes.
+    pub fn turned(&self, axes: [Vec3; 3]) -> Self {
+        let [x, y, z] = self.slopes;
+        let slopes = axes.map(|axis| x * axis.x + y * axis.y + z * axis.z);
+        Self { constant: self.constant, slopes }
+    }
+
+    /// What it lights a white surface with a unit normal to.
+    pub fn irradiance(&self, normal: Vec3) -> Vec3 {
+        let [x, y, z] = self.slopes;
+        self.constant + (x * normal.x + y * normal.y + z * normal.z) * (2.0 / 3.0)
+    }
 }
 
 fn unit(v: &Vectors) -> Vectors {

@@ -22,7 +22,7 @@ pub mod reflection;
 mod surface_point;
 
 pub use bake::{Beam, TextureFrame, baked};
-pub use curved::{Curved, CurvedSun, FrameLanes, Slant, linear_sky};
+pub use curved::{Curved, CurvedSun, FrameLanes, LinearSky, Slant};
 pub use disc::{Disc, spiral};
 pub use horizons::{Horizons, NUM_AZIMUTHS, SKY_PLANE};
 pub use local::{LocalLights, Reflected};

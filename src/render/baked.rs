@@ -150,6 +150,11 @@ impl Baked {
         sides.any(|side| !side.apart.is_empty())
     }
 
+    /// Whether a mesh, by its index, is not of flat pieces.
+    pub(crate) fn is_curved(&self, mesh: usize) -> bool {
+        matches!(self.of_mesh.get(mesh), Some(OfMesh::All(NONE)))
+    }
+
     /// The meshes that are not of flat pieces.
     pub(crate) fn curved<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a Mesh> {
         let meshes = scene.meshes.iter().zip(&self.of_mesh);

@@ -5,9 +5,10 @@
 
 use super::ground::{Ground, Swept};
 use super::shade::{ShadeScratch, Shader};
-use crate::light::{Curved, CurvedSun, Disc, FrameLanes, Slant};
+use super::skies::Skies;
+use crate::light::{Curved, CurvedSun, Disc, FrameLanes, LinearSky, Slant};
 use crate::raster::{LitLanes, QuadBlock};
-use crate::scene::{Light, Scene, Sky};
+use crate::scene::{Light, Scene};
 use crate::simd::PixelLanes;
 use glam::Vec3;
 use std::ops::Range;
@@ -55,17 +56,17 @@ impl Shader<'_> {
 
 /// What lights pairs of a block.
 #[derive(Debug)]
-pub(super) struct CurvedLights<'a> {
-    sky: Option<&'a Sky>,
+pub(super) struct CurvedLights {
+    skies: Vec<[LinearSky; 8]>,
     suns: Vec<CurvedSun>,
     frames: Vec<FrameLanes>,
     slants: Vec<Slant>,
 }
 
-impl<'a> CurvedLights<'a> {
+impl CurvedLights {
     /// Some of a scene's lights on pairs of a block.
     pub(super) fn new(
-        scene: &'a Scene,
+        (scene, skies): (&Scene, &Skies),
         swept: Swept,
         block: &QuadBlock,
         pairs: Range<usize>,
@@ -81,9 +82,9 @@ impl<'a> CurvedLights<'a> {
             intensity: *intensity,
             radius: disc.radius,
         };
-        let sky = swept.has_sky.then_some(&scene.sky);
         let suns = discs.iter().map(sun).collect();
-        let mut all = Self { sky, suns, frames: Vec::new(), slants: Vec::new() };
+        let (frames, slants, of_pairs) = Default::default();
+        let mut all = Self { skies: of_pairs, suns, frames, slants };
         for pair in pairs.map(|index| block.pair(index)) {
             let Some(LitLanes { position, normal, tangent_u, tangent_v }) = pair.lit() else {
                 continue;
@@ -92,13 +93,16 @@ impl<'a> CurvedLights<'a> {
                 FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
             all.slants.extend(discs.iter().map(|(disc, _)| frame.slant(disc.to_middle)));
             all.frames.push(frame);
+            if swept.has_sky {
+                all.skies.push(skies.of_pair(scene, &pair));
+            }
         }
         all
     }
 
     /// All of them.
     pub(super) fn all(&self) -> Curved<'_> {
-        let Self { sky, suns, frames, slants } = self;
-        Curved { suns, sky: *sky, frames, slants }
+        let Self { skies, suns, frames, slants } = self;
+        Curved { suns, skies, frames, slants }
     }
 }

@@ -101,7 +101,7 @@ pub(super) fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
 
 /// The polygon's point at a place of the screen; `None` without lighting.
 pub(super) fn surface_point(planes: &AttributePlanes, [x, y]: [f32; 2]) -> Option<SurfacePoint> {
-    let LitPlanes { position, normal, tangent_u, tangent_v } = planes.lit.as_deref()?;
+    let LitPlanes { position, normal, tangent_u, tangent_v, .. } = planes.lit.as_deref()?;
     let [a, b, c] = planes.inverse_w;
     // Divided once for all twelve coordinates.
     let w = 1.0 / (a * x + b * y + c);

@@ -15,6 +15,7 @@ mod prepared;
 mod reflections;
 mod shade;
 mod shadows;
+mod skies;
 
 pub(crate) use prepared::PreparedScene;
 pub(crate) use shade::{ShadeScratch, Shader};

@@ -2,6 +2,7 @@
 
 use super::baked::Baked;
 use super::ground::{Ground, Swept};
+use super::skies::Skies;
 use crate::filter::Prepared;
 use crate::light::Disc;
 use crate::light::exact::{Ceiling, Occluders};
@@ -33,6 +34,8 @@ pub(crate) struct PreparedScene {
     occluders: OnceLock<Occluders>,
     /// What curved surfaces ask for: of each sun.
     ceilings: OnceLock<Vec<Ceiling>>,
+    /// The same of the sky.
+    skies: OnceLock<Skies>,
 }
 
 impl PreparedScene {
@@ -71,8 +74,8 @@ impl PreparedScene {
             })
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
-        let (reflectance, occluders, ceilings) = Default::default();
-        Self { surfaces, flat, of_material, baked: None, reflectance, occluders, ceilings }
+        let (reflectance, occluders, ceilings, skies) = Default::default();
+        Self { surfaces, flat, of_material, baked: None, reflectance, occluders, ceilings, skies }
     }
 
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
@@ -100,6 +103,7 @@ impl PreparedScene {
             self.baked = Some((settings.parallax, baked));
             if !curved.is_empty() && settings.filter.traits().asks_for_lights {
                 self.ceilings(scene);
+                self.skies(scene);
                 for material in curved {
                     self.of_material(material, settings.parallax).map(Prepared::horizons);
                 }
@@ -144,6 +148,12 @@ impl PreparedScene {
             };
             scene.lights.iter().filter_map(ceiling).collect()
         })
+    }
+
+    /// What of the sky gets to curved meshes.
+    pub(crate) fn skies(&self, scene: &Scene) -> &Skies {
+        let is_curved = |mesh: usize| self.baked.as_ref().is_some_and(|(_, b)| b.is_curved(mesh));
+        self.skies.get_or_init(|| Skies::new(scene, self.occluders(scene), is_curved))
     }
 
     /// The group in which a triangle is shaded, by the index of its mesh and in it.

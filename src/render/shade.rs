@@ -158,7 +158,12 @@ impl<'a> Shader<'a> {
         filtered.resize(pairs.len(), Filtered::default());
         let curved_lights;
         let curved = if let Some(swept) = ground.swept {
-            curved_lights = CurvedLights::new(self.scene, swept, block, pairs.clone());
+            curved_lights = CurvedLights::new(
+                (self.scene, self.prepared.skies(self.scene)),
+                swept,
+                block,
+                pairs.clone(),
+            );
             Some(curved_lights.all())
         } else {
             None

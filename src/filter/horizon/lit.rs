@@ -5,10 +5,11 @@
 //! polygon's point that it is seen over.
 
 use super::pixels::PixelOnLines;
-use crate::light::{Curved, NUM_AZIMUTHS, SKY_PLANE, Slant, linear_sky};
+use crate::light::{Curved, LinearSky, NUM_AZIMUTHS, SKY_PLANE, Slant};
 use crate::relief::directions::diamond_angle;
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, u32x16};
 use crate::texture::Rows;
+use glam::Vec3;
 
 /// A number that is linear in the line and the seen place.
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,6 +36,28 @@ struct PatchSky {
     constant: [f32; 3],
     /// Along u, along v and off the surface; `None` where it is the same from everywhere.
     slopes: Option<[[f32; 3]; 3]>,
+    /// How much brighter it is at a place than in the middle.
+    gain: Linear,
+}
+
+/// Greatest share of the sky's constant that slopes are left out for: half of a byte's step.
+const LEAST_SLOPE: f32 = 1.0 / 512.0;
+
+impl PatchSky {
+    fn new(curved: &Curved, picks: &[u8], fit: &Fit) -> Self {
+        let share = 1.0 / picks.len() as f32;
+        let mean = LinearSky::blend(picks.iter().map(|pick| (*curved.sky(*pick), share)));
+        let axes = curved.mean_axes(picks);
+        let light = |sky: &LinearSky, normal: Vec3| sky.irradiance(normal).element_sum();
+        let inverse = 1.0 / light(&mean, axes[2]).max(f32::MIN_POSITIVE);
+        let gain = |pick: &u8| light(curved.sky(*pick), curved.normal(*pick)) * inverse;
+        let gain = fit.linear(picks.iter().map(gain));
+        let local = mean.turned(axes);
+        let most = local.slopes.iter().fold(0.0_f32, |most, s| most.max(s.abs().max_element()));
+        let is_even = most <= LEAST_SLOPE * local.constant.max_element();
+        let slopes = local.slopes.map(|slope| slope.to_array());
+        Self { constant: local.constant.to_array(), slopes: (!is_even).then_some(slopes), gain }
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -110,11 +133,7 @@ impl<'a> PatchLight<'a> {
             }
         });
         let suns = suns.collect();
-        let axes = curved.mean_axes(picks);
-        let sky = curved.sky.map(|sky| {
-            let [constant, slopes @ ..] = linear_sky(sky, axes).map(|c| c.to_array());
-            PatchSky { constant, slopes: (!sky.is_uniform()).then_some(slopes) }
-        });
+        let sky = (!curved.skies.is_empty()).then(|| PatchSky::new(curved, picks, &fit));
         Self { rows, middle: fit.middle, suns, sky }
     }
 
@@ -134,10 +153,11 @@ impl<'a> PatchLight<'a> {
         if let Some(sky) = &self.sky {
             let word = between.words_at(words, start + SKY_PLANE * stride);
             let t = |i: u32| between.bits_of(word, 8 * i, 0xff) * (1.0 / (255.0 * BETWEEN_SCALE));
-            let all = t(0);
+            let gain = sky.gain.at(xi, p).fast_max(LineLanes::ZERO);
+            let all = t(0) * gain;
             (0..3).for_each(|c| sums[c] = all * sky.constant[c]);
             if let Some(slopes) = &sky.slopes {
-                let [x, y, z] = [t(1) * 2.0 - 1.0, t(2) * 2.0 - 1.0, t(3)];
+                let [x, y, z] = [t(1) * 2.0 - 1.0, t(2) * 2.0 - 1.0, t(3)].map(|t| t * gain);
                 for c in 0..3 {
                     let more = x * slopes[0][c] + y * slopes[1][c] + z * slopes[2][c];
                     sums[c] = (sums[c] + more).fast_max(LineLanes::ZERO);
