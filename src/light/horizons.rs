@@ -6,8 +6,9 @@
 //! shadow is as sharp as the texels, whatever the sun's height.
 //!
 //! A height is `c = t / (1 + t)`, with `t` the tangent of light's elevation in the texture's own
-//! lengths: 0 along the surface, 1 straight down. Mean horizons come from sweeps along light of
-//! evenly spaced heights ([`LitParts`]): what of them reaches the texel lies above its horizon.
+//! lengths: 0 along the surface, 1 straight down. A byte holds its root, which is finer where light
+//! grazes and shadows are long. Horizons come from sweeps along light whose heights' roots are evenly
+//! spaced ([`LitParts`]): what of them reaches the texel lies above its horizon.
 //!
 //! The sky comes from all directions, and is taken for linear in the direction over the half space
 //! that a place sees: `L(l) = c0 + c.l`. Then a texel shows `c0 t0 + c.t` of it, with
@@ -18,8 +19,8 @@
 //!
 //! which are four numbers of the texel, summed over its horizons.
 
-use crate::relief::LitParts;
 use crate::relief::directions::diamond_direction;
+use crate::relief::{LitParts, MAX_SLOPE};
 use crate::texture::{Level, Rows, Surface, box_taps};
 use rayon::prelude::*;
 
@@ -27,13 +28,16 @@ use rayon::prelude::*;
 pub const NUM_AZIMUTHS: usize = 16;
 
 /// Heights of light that horizons are found by.
-const NUM_HEIGHTS: usize = 48;
+const NUM_HEIGHTS: usize = 64;
 
-/// Words of a texel: four horizons each, and one of the sky.
-const NUM_WORDS: usize = NUM_AZIMUTHS / 4 + 1;
+/// The plane of each texel's normal, x, y and z from -1 to 1, and `t0`.
+pub const NORMAL_PLANE: usize = NUM_AZIMUTHS / 4;
 
-/// The plane of the sky's word.
-pub const SKY_PLANE: usize = NUM_AZIMUTHS / 4;
+/// The plane of `t`: x and y from -1 to 1, z from 0.
+pub const SKY_PLANE: usize = NORMAL_PLANE + 1;
+
+/// Words of a texel: four horizons each, then those two.
+const NUM_WORDS: usize = SKY_PLANE + 1;
 
 /// A texel's words.
 type Words = [u32; NUM_WORDS];
@@ -52,11 +56,11 @@ impl Horizons {
         let mut size = level.size();
         let mut texels = vec![[0; NUM_WORDS]; size[0] * size[1]];
         for azimuth in 0..NUM_AZIMUTHS {
-            let sums = lit_heights(level, azimuth, surface.relief_depth());
+            let lit = LitHeights::new(level, azimuth, surface.relief_depth());
             let (word, shift) = (azimuth / 4, azimuth % 4 * 8);
             texels.par_chunks_exact_mut(size[0]).enumerate().for_each(|(y, texels)| {
                 for (x, texel) in texels.iter_mut().enumerate() {
-                    let horizon = 1.0 - sums.at(x, y) * (1.0 / NUM_HEIGHTS as f32);
+                    let horizon = 1.0 - lit.at(x, y) * (1.0 / NUM_HEIGHTS as f32);
                     texel[word] |= byte(horizon) << shift;
                 }
             });
@@ -65,7 +69,7 @@ impl Horizons {
         texels.par_chunks_exact_mut(size[0]).enumerate().for_each(|(y, texels)| {
             for (x, texel) in texels.iter_mut().enumerate() {
                 let normal = level.texel(x as i32, y as i32).normal;
-                texel[SKY_PLANE] = sky.word(texel, normal);
+                [texel[NORMAL_PLANE], texel[SKY_PLANE]] = sky.words(texel, normal);
             }
         });
         let mut levels = Vec::new();
@@ -80,6 +84,13 @@ impl Horizons {
         }
     }
 
+    /// The words of a texel of the finest level.
+    pub fn texel(&self, x: i32, y: i32) -> Vec<u32> {
+        let rows = &self.levels[0][0];
+        let start = rows.start_at(x, y);
+        (0..NUM_WORDS).map(|plane| rows.words()[start + plane * rows.stride()]).collect()
+    }
+
     /// The words of a level row by row: along u, or along v where they are wanted turned.
     pub(crate) fn rows(&self, level: usize, is_turned: bool) -> &Rows {
         &self.levels[level][usize::from(is_turned)]
@@ -90,35 +101,32 @@ fn byte(c: f32) -> u32 {
     (c * 255.0 + 0.5).clamp(0.0, 255.0) as u32
 }
 
-/// A number of each texel, in rows along u or along v.
-struct Sums {
-    is_turned: bool,
-    width: usize,
-    values: Vec<f32>,
+/// How many of the heights of light from an azimuth reach each texel: in rows along u, and in rows
+/// along v. Light of one azimuth is swept along the same rows at all heights, unless rounding decides.
+struct LitHeights {
+    size: [usize; 2],
+    sums: [Vec<f32>; 2],
 }
 
-impl Sums {
-    fn at(&self, x: usize, y: usize) -> f32 {
-        let [x, y] = if self.is_turned { [y, x] } else { [x, y] };
-        self.values[y * self.width + x]
+impl LitHeights {
+    fn new(level: &Level, azimuth: usize, relief_depth: f32) -> Self {
+        let mut all = Self { size: level.size(), sums: [Vec::new(), Vec::new()] };
+        let [x, y] = direction(azimuth);
+        for i in 0..NUM_HEIGHTS {
+            let root = (i as f32 + 0.5) / NUM_HEIGHTS as f32;
+            let height = (root * root).max(1.0 / (1.0 + MAX_SLOPE));
+            let reach = -relief_depth * (1.0 - height) / height;
+            all.add(&LitParts::new(level, [x * reach, y * reach]));
+        }
+        all
     }
-}
 
-/// How many of the heights of light from an azimuth reach each texel.
-fn lit_heights(level: &Level, azimuth: usize, relief_depth: f32) -> Sums {
-    let [x, y] = direction(azimuth);
-    let mut sums: Option<Sums> = None;
-    for i in 0..NUM_HEIGHTS {
-        let height = (i as f32 + 0.5) / NUM_HEIGHTS as f32;
-        let reach = -relief_depth * (1.0 - height) / height;
-        let lit = LitParts::new(level, [x * reach, y * reach]);
-        let sums = sums.get_or_insert_with(|| {
-            let rows = level.rows(lit.is_turned);
-            let (width, height) = (rows.width(), rows.height());
-            Sums { is_turned: lit.is_turned, width, values: vec![0.0; width * height] }
-        });
-        let width = sums.width;
-        sums.values.par_chunks_exact_mut(width).enumerate().for_each_init(
+    fn add(&mut self, lit: &LitParts) {
+        let [width, height] = self.size;
+        let sums = &mut self.sums[usize::from(lit.is_turned)];
+        sums.resize(width * height, 0.0);
+        let length = if lit.is_turned { height } else { width };
+        sums.par_chunks_exact_mut(length).enumerate().for_each_init(
             Default::default,
             |(lines, parts): &mut (Vec<f32>, Vec<f32>), (row, sums)| {
                 lit.row(row, lines, parts);
@@ -126,7 +134,13 @@ fn lit_heights(level: &Level, azimuth: usize, relief_depth: f32) -> Sums {
             },
         );
     }
-    sums.expect("some heights")
+
+    fn at(&self, x: usize, y: usize) -> f32 {
+        let [width, height] = self.size;
+        let [along_u, along_v] = &self.sums;
+        let of = |sums: &[f32], i: usize| sums.get(i).copied().unwrap_or(0.0);
+        of(along_u, y * width + x) + of(along_v, x * height + y)
+    }
 }
 
 /// The unit direction of an azimuth.
@@ -161,7 +175,8 @@ impl SkySums {
         for i in (0..255).rev() {
             for step in 0..STEPS {
                 let c = |part: f64| {
-                    let c = (i as f64 + 1.0 - part / STEPS as f64) / 255.0;
+                    let root = (i as f64 + 1.0 - part / STEPS as f64) / 255.0;
+                    let c = root * root;
                     let inverse = 1.0 / (c * c + (1.0 - c) * (1.0 - c)).sqrt();
                     [(1.0 - c) * inverse, c * inverse]
                 };
@@ -177,7 +192,7 @@ impl SkySums {
         Self { azimuths, above }
     }
 
-    fn word(&self, texel: &Words, [nx, ny, nz]: [f32; 3]) -> u32 {
+    fn words(&self, texel: &Words, [nx, ny, nz]: [f32; 3]) -> [u32; 2] {
         let mut sums = [0.0_f32; 4];
         for (i, ([x, y], share)) in self.azimuths.iter().enumerate() {
             let horizon = texel[i / 4] >> (i % 4 * 8) & 0xff;
@@ -188,10 +203,12 @@ impl SkySums {
             let of = [a * c + nz * s, level * x, level * y, a * sc + nz * ss];
             sums.iter_mut().zip(of).for_each(|(sum, of)| *sum += of * share);
         }
-        byte(sums[0])
-            | byte(sums[1] * 0.5 + 0.5) << 8
-            | byte(sums[2] * 0.5 + 0.5) << 16
-            | byte(sums[3]) << 24
+        let word = |bytes: [f32; 4]| u32::from_le_bytes(bytes.map(|c| byte(c) as u8));
+        let signed = |c: f32| c * 0.5 + 0.5;
+        [
+            word([signed(nx), signed(ny), signed(nz), sums[0]]),
+            word([signed(sums[1]), signed(sums[2]), sums[3], 0.0]),
+        ]
     }
 }
 

@@ -24,6 +24,6 @@ mod surface_point;
 pub use bake::{Beam, TextureFrame, baked};
 pub use curved::{Curved, CurvedSun, FrameLanes, LinearSky, Slant};
 pub use disc::{Disc, spiral};
-pub use horizons::{Horizons, NUM_AZIMUTHS, SKY_PLANE};
+pub use horizons::{Horizons, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE};
 pub use local::{LocalLights, Reflected};
 pub use surface_point::SurfacePoint;

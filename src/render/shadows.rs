@@ -176,6 +176,8 @@ struct ViewRays {
     way: Vectors,
     /// Unit normals on the eye's side.
     normal: Vectors,
+    /// See [`Places`].
+    steps: [Vectors; 2],
     reach: PixelLanes,
     covered: u8,
 }
@@ -192,26 +194,36 @@ impl ViewRays {
         let way =
             [0, 1, 2].map(|i| tangent_u[i] * moved[0] + tangent_v[i] * moved[1] - down * normal[i]);
         let covered = pair.covered_bits();
-        Some(Self { polygon: position, way, normal, reach: down * 2.0, covered })
+        let steps = steps(&position);
+        Some(Self { polygon: position, way, normal, steps, reach: down * 2.0, covered })
     }
 
-    /// All of their points by the axes across a light and to it.
+    /// All of their points by the axes across a light and to it. Own triangles lie about as high as
+    /// where the rays pass them: within the reach above is what may only touch the relief.
     fn spots(&self, axes: [Vec3; 3]) -> Spots {
-        let [x, y, up] = axes.map(|axis| {
-            let (from, way) = (along(&self.polygon, axis), along(&self.way, axis));
-            let ends = [from.fast_min(from + way), from.fast_max(from + way)];
-            let [least, most] = ends.map(PixelLanes::to_array);
+        let range = |from: PixelLanes, to: PixelLanes| {
+            let [least, most] = [from.fast_min(to), from.fast_max(to)].map(PixelLanes::to_array);
             set_bits(self.covered)
                 .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
+        };
+        let [x, y, up] = axes.map(|axis| {
+            let (from, way) = (along(&self.polygon, axis), along(&self.way, axis));
+            let half =
+                (along(&self.steps[0], axis).abs() + along(&self.steps[1], axis).abs()) * 0.5;
+            let ([a, b], [c, d]) = (range(from - half, from + half), range(from + way, from));
+            ([a.min(c), b.max(d)], b)
         });
-        let reach = self.reach.to_array();
-        let reach = set_bits(self.covered).fold(f32::MAX, |least, lane| least.min(reach[lane]));
-        Spots { across: [x, y], height: up[0], reach }
+        let reach = range(self.reach, self.reach)[0];
+        Spots { across: [x.0, y.0], lowest: up.0[0], own: up.1 + reach }
     }
 }
 
 fn of_lane(vectors: &Vectors, lane: usize) -> Vec3 {
     Vec3::from(vectors.map(|axis| axis.as_array()[lane]))
+}
+
+fn along(v: &Vectors, axis: Vec3) -> PixelLanes {
+    v[0] * axis.x + v[1] * axis.y + v[2] * axis.z
 }
 
 /// Where the pixels of a pair are in the world.
@@ -240,25 +252,25 @@ impl Places {
     }
 }
 
-fn along(v: &Vectors, axis: Vec3) -> PixelLanes {
-    v[0] * axis.x + v[1] * axis.y + v[2] * axis.z
-}
-
-fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Places {
-    let LitLanes { position, tangent_u, tangent_v, .. } = *lit;
+/// How far a point moves from a column of pixels to the next, and a row.
+fn steps(position: &Vectors) -> [Vectors; 2] {
     // Pixels of a quad: lanes 0 and 1 side by side, 0 and 2 one above the other.
-    let step = |by: usize| {
+    [1, 2].map(|by| {
         position.map(|axis| {
             let axis = axis.to_array();
             PixelLanes::new(std::array::from_fn(|lane| {
                 axis[lane / 4 * 4 + by] - axis[lane / 4 * 4]
             }))
         })
-    };
+    })
+}
+
+fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Places {
+    let LitLanes { position, tangent_u, tangent_v, .. } = *lit;
     let all = Places {
         relief: position,
         polygon: position,
-        steps: [step(1), step(2)],
+        steps: steps(&position),
         reach: PixelLanes::ZERO,
         covered: pair.covered_bits(),
     };

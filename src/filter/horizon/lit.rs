@@ -5,7 +5,7 @@
 //! polygon's point that it is seen over.
 
 use super::pixels::PixelOnLines;
-use crate::light::{Curved, LinearSky, NUM_AZIMUTHS, SKY_PLANE, Slant};
+use crate::light::{Curved, LinearSky, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE, Slant};
 use crate::relief::directions::diamond_angle;
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, u32x16};
 use crate::texture::Rows;
@@ -138,28 +138,30 @@ impl<'a> PatchLight<'a> {
     }
 
     /// What a white surface shows of the lights where lines cross a row whose words of horizons
-    /// begin at `start`; `normals` are the words of the texels' normals there.
+    /// begin at `start`.
     #[inline(always)]
     pub(super) fn at(
         &self,
         start: usize,
         between: &Between,
         [xi, p]: [LineLanes; 2],
-        normals: [u32x16; 2],
     ) -> [LineLanes; 3] {
         let (words, stride) = (self.rows.words(), self.rows.stride());
         let [xi, p] = [xi - self.middle[0], p - self.middle[1]];
         let mut sums = [LineLanes::ZERO; 3];
+        let unit = 1.0 / (255.0 * BETWEEN_SCALE);
+        let part = |word: [u32x16; 2], i: u32| between.bits_of(word, 8 * i, 0xff) * unit;
+        let signed = |word: [u32x16; 2], i: u32| part(word, i) * 2.0 - 1.0;
+        let normals = between.words_at(words, start + NORMAL_PLANE * stride);
         if let Some(sky) = &self.sky {
-            let word = between.words_at(words, start + SKY_PLANE * stride);
-            let t = |i: u32| between.bits_of(word, 8 * i, 0xff) * (1.0 / (255.0 * BETWEEN_SCALE));
             let gain = sky.gain.at(xi, p).fast_max(LineLanes::ZERO);
-            let all = t(0) * gain;
+            let all = part(normals, 3) * gain;
             (0..3).for_each(|c| sums[c] = all * sky.constant[c]);
             if let Some(slopes) = &sky.slopes {
-                let [x, y, z] = [t(1) * 2.0 - 1.0, t(2) * 2.0 - 1.0, t(3)].map(|t| t * gain);
+                let word = between.words_at(words, start + SKY_PLANE * stride);
+                let t = [signed(word, 0) * gain, signed(word, 1) * gain, part(word, 2) * gain];
                 for c in 0..3 {
-                    let more = x * slopes[0][c] + y * slopes[1][c] + z * slopes[2][c];
+                    let more = t[0] * slopes[0][c] + t[1] * slopes[1][c] + t[2] * slopes[2][c];
                     sums[c] = (sums[c] + more).fast_max(LineLanes::ZERO);
                 }
             }
@@ -167,7 +169,7 @@ impl<'a> PatchLight<'a> {
         if self.suns.is_empty() {
             return sums;
         }
-        let normal = normals_between(between, normals);
+        let normal = [0, 1, 2].map(|i| signed(normals, i));
         for sun in &self.suns {
             let [l0, l1, l2] = sun.to_light.map(|l| l.at(xi, p));
             let n_l = (normal[0] * l0 + normal[1] * l1 + normal[2] * l2).fast_max(LineLanes::ZERO);
@@ -181,8 +183,8 @@ impl<'a> PatchLight<'a> {
             let a = between.bits_of(word, shift, 0xff);
             let b = between.bits_of(next, next_shift, 0xff);
             let part = sun.part.at(xi, p).fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
-            let horizon = (a + (b - a) * part) * (1.0 / (255.0 * BETWEEN_SCALE));
-            let lit = (sun.height.at(xi, p) - horizon) * sun.inverse_width + 0.5;
+            let root = (a + (b - a) * part) * unit;
+            let lit = (sun.height.at(xi, p) - root * root) * sun.inverse_width + 0.5;
             let lit = n_l * lit.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
             (0..3).for_each(|c| sums[c] += lit * sun.intensity[c]);
         }
@@ -195,16 +197,6 @@ impl Linear {
     fn at(&self, xi: LineLanes, p: LineLanes) -> LineLanes {
         xi * self.per_line + p * self.per_row + self.middle
     }
-}
-
-/// The normals of texels where lines cross a row, from their packed words.
-#[inline(always)]
-fn normals_between(between: &Between, words: [u32x16; 2]) -> [LineLanes; 3] {
-    let part = |first: u32, half: u32| {
-        let unit = 1.0 / (half as f32 * BETWEEN_SCALE);
-        between.bits_of(words, first, 2 * half + 1) * unit - 1.0
-    };
-    [part(0, 1023), part(11, 1023), part(22, 511)]
 }
 
 /// Least squares over the places of pixels.

@@ -92,7 +92,7 @@ pub(super) fn colors(
         // Lit frames have no tables: all covered pixels are near, and the next lights are theirs.
         let (of_these, others) = lights.split_at(if lights.is_empty() { 0 } else { near.len() });
         let curved = batch.curved.map(|curved| curved.part(i * NUM_VECTORS, pixels.len()));
-        let light = curved.as_ref().zip(prepared.horizons().filter(|_| is_curved));
+        let light = curved.as_ref().and_then(|curved| Some((curved, prepared.horizons()?)));
         let patches = Patches {
             is_alone: batch.is_alone,
             light,

@@ -28,9 +28,9 @@ pub struct Spots {
     /// How far they lie along both axes across the light, the least and the greatest.
     pub across: [[f32; 2]; 2],
     /// How far at least they lie towards the sun.
-    pub height: f32,
-    /// Triangles that light passes from behind hide nothing that is nearer.
-    pub reach: f32,
+    pub lowest: f32,
+    /// Triangles that light passes from behind hide nothing if they lie no higher.
+    pub own: f32,
 }
 
 impl Ceiling {
@@ -114,7 +114,7 @@ impl Ceiling {
     pub fn is_clear(&self, spots: &Spots) -> bool {
         // Rays to the edge of the disc part from the one to its middle on their way up.
         let highest = self.levels[self.levels.len() - 1][0];
-        let more = (highest[0].max(highest[1]) - spots.height).max(0.0) * self.disc.radius;
+        let more = (highest[0].max(highest[1]) - spots.lowest).max(0.0) * self.disc.radius;
         let Some(cells) = self.cells(&spots.across.map(|[a, b]| [a - more, b + more])) else {
             return false;
         };
@@ -125,9 +125,9 @@ impl Ceiling {
         let side = SIDE >> level;
         let [columns, rows] = cells.map(|range| range.map(|i| i >> level));
         (rows[0]..=rows[1]).all(|y| {
-            self.levels[level][y * side..][columns[0]..=columns[1]].iter().all(|[behind, front]| {
-                *behind <= spots.height + spots.reach && *front <= spots.height
-            })
+            self.levels[level][y * side..][columns[0]..=columns[1]]
+                .iter()
+                .all(|[behind, front]| *behind <= spots.own && *front <= spots.lowest)
         })
     }
 }
