@@ -366,6 +366,14 @@ impl Between {
         }
     }
 
+    /// Some bits of words picked by [`Self::words_at`], at most 15 of them, at the places, in units of
+    /// 1 / [`BETWEEN_SCALE`].
+    #[inline(always)]
+    pub fn bits_of(&self, words: [u32x16; 2], first: u32, mask: u32) -> f32x16 {
+        let [near, far] = words.map(|words| (words >> first) & u32x16::splat(mask));
+        self.sum(near | far << 16_u32)
+    }
+
     /// Both neighbours by their shares.
     #[inline(always)]
     fn sum(&self, neighbours: u32x16) -> f32x16 {

@@ -1,7 +1,7 @@
 //! What goes into a filter and what comes out of it.
 
 use crate::footprint::Footprints;
-use crate::light::LocalLights;
+use crate::light::{Curved, LocalLights};
 use crate::simd::PixelLanes;
 use crate::texture::Texel;
 
@@ -12,6 +12,8 @@ pub struct Batch<'a> {
     pub pixels: &'a [Footprints],
     /// Under lights, those of each covered pixel, in order; else empty.
     pub lights: &'a [LocalLights],
+    /// Of a curved surface whose relief hides light from itself, the lights of each vector.
+    pub curved: Option<&'a Curved<'a>>,
     /// Whether the horizon sweeps each pixel by itself, and cuts its kernel finely enough for its
     /// weights to be exact to 1e-4. Pictures need not that, and are drawn many times as fast without.
     pub is_alone: bool,

@@ -2,6 +2,7 @@
 
 use super::far_field::FarField;
 use crate::footprint::Footprint;
+use crate::light::Horizons;
 use crate::relief::{HeightCells, HeightField, LevelLoss, displacement, march};
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
@@ -30,6 +31,7 @@ struct Relief {
     field: OnceLock<HeightField>,
     cells: OnceLock<HeightCells>,
     loss: LevelLoss,
+    horizons: OnceLock<Horizons>,
 }
 
 impl Prepared {
@@ -41,6 +43,7 @@ impl Prepared {
                 field: OnceLock::new(),
                 cells: OnceLock::new(),
                 loss: LevelLoss::new(&surface),
+                horizons: OnceLock::new(),
             })
         });
         Self { surface, relief, far: Arc::default(), has_far_field: true, is_lit: false }
@@ -100,6 +103,12 @@ impl Prepared {
     pub(super) fn cells(&self) -> Option<&HeightCells> {
         let relief = self.relief.as_deref()?;
         Some(relief.cells.get_or_init(|| HeightCells::new(&self.surface)))
+    }
+
+    /// What hides light from its texels; `None` where the surface is flat.
+    pub(crate) fn horizons(&self) -> Option<&Horizons> {
+        let relief = self.relief.as_deref()?;
+        Some(relief.horizons.get_or_init(|| Horizons::new(&self.surface)))
     }
 
     /// What levels lose in occlusion; `None` where the surface is flat.

@@ -13,13 +13,17 @@
 //! than one it is: `a^2 + 2 (1 - |n|) / |n|` (Toksvig 2005, "Mipmapping normal maps").
 
 mod bake;
+mod curved;
 mod disc;
 pub mod exact;
+mod horizons;
 mod local;
 pub mod reflection;
 mod surface_point;
 
 pub use bake::{Beam, TextureFrame, baked};
+pub use curved::{Curved, CurvedSun, FrameLanes, LinearSky, Slant};
 pub use disc::{Disc, spiral};
+pub use horizons::{Horizons, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE};
 pub use local::{LocalLights, Reflected};
 pub use surface_point::SurfacePoint;

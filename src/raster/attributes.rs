@@ -23,6 +23,7 @@ type Vectors = [f64x8; 3];
 /// The corners of a triangle of the scene.
 #[derive(Clone, Copy)]
 struct Corners<'a> {
+    triangle: [u32; 2],
     mesh: &'a Mesh,
     indices: [usize; 3],
 }
@@ -67,9 +68,10 @@ impl<'a> PlaneMaker<'a> {
         }
     }
 
-    fn corners(&self, [mesh, triangle]: [u32; 2]) -> Corners<'a> {
-        let mesh = &self.scene.meshes[mesh as usize];
-        Corners { mesh, indices: mesh.triangles[triangle as usize].map(|i| i as usize) }
+    fn corners(&self, [index, triangle]: [u32; 2]) -> Corners<'a> {
+        let mesh = &self.scene.meshes[index as usize];
+        let indices = mesh.triangles[triangle as usize].map(|i| i as usize);
+        Corners { triangle: [index, triangle], mesh, indices }
     }
 
     fn fill_lanes(&self, planes: &mut [AttributePlanes], corners: &[Corners; 8]) {
@@ -138,6 +140,7 @@ fn fill_lit(planes: &mut [AttributePlanes], basis: &BasisLanes, corners: &[Corne
             normal: three(&normal),
             tangent_u: three(&tangent_u),
             tangent_v: three(&tangent_v),
+            triangle: corners[lane].triangle,
         };
     }
 }
@@ -153,7 +156,7 @@ fn one(coefficients: &[[f32; 8]; 3], lane: usize) -> Plane {
 fn vectors(corners: &[Corners; 8], of: impl Fn(&Mesh, usize) -> Vec3) -> [Vectors; 3] {
     [0, 1, 2].map(|corner| {
         let mut lanes = [[0.0_f32; 8]; 3];
-        for (lane, Corners { mesh, indices }) in corners.iter().enumerate() {
+        for (lane, Corners { mesh, indices, .. }) in corners.iter().enumerate() {
             let [x, y, z] = of(mesh, indices[corner]).to_array();
             (lanes[0][lane], lanes[1][lane], lanes[2][lane]) = (x, y, z);
         }

@@ -35,6 +35,8 @@ pub struct LitPlanes {
     pub tangent_u: [Plane; 3],
     /// dP/dv; 0 without texture coordinates.
     pub tangent_v: [Plane; 3],
+    /// The index of the mesh, and of the triangle in it.
+    pub triangle: [u32; 2],
 }
 
 /// World-space attributes at eight pixels.

@@ -74,7 +74,7 @@ pub fn diamond_angle(x: f32, y: f32) -> f32 {
 }
 
 /// The unit vector of a [`diamond_angle`].
-fn diamond_direction(angle: f32) -> [f32; 2] {
+pub fn diamond_direction(angle: f32) -> [f32; 2] {
     let y = if angle < 1.0 {
         angle
     } else if angle < 3.0 {

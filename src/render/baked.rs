@@ -150,6 +150,17 @@ impl Baked {
         sides.any(|side| !side.apart.is_empty())
     }
 
+    /// Whether a mesh, by its index, is not of flat pieces.
+    pub(crate) fn is_curved(&self, mesh: usize) -> bool {
+        matches!(self.of_mesh.get(mesh), Some(OfMesh::All(NONE)))
+    }
+
+    /// The meshes that are not of flat pieces.
+    pub(crate) fn curved<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = &'a Mesh> {
+        let meshes = scene.meshes.iter().zip(&self.of_mesh);
+        meshes.filter(|(_, of)| matches!(of, OfMesh::All(NONE))).map(|(mesh, _)| mesh)
+    }
+
     /// The group of a triangle, by the index of its mesh and in it; `None` where it is not baked.
     pub(crate) fn group(&self, scene: &Scene, triangle: [u32; 2]) -> Option<u32> {
         self.seen(scene, triangle).map(|(piece, side)| (2 * piece + side) as u32)

@@ -71,7 +71,7 @@ impl Exact<'_> {
         let Samples { planes, x, y, num, .. } = *samples;
         let rays = ground.rays(planes, ([x, y], num), (pixel, self.is_traced));
         let mut texels = [Filtered::default()];
-        let batch = Batch { pixels: &[rays], lights: &[], is_alone: false };
+        let batch = Batch { pixels: &[rays], lights: &[], curved: None, is_alone: false };
         self.filter.colors(ground.prepared, &batch, scratch, &mut texels);
         let [texels] = texels;
         self.sum(samples, rays.covered, |lane| {

@@ -19,8 +19,19 @@ pub(crate) struct Ground<'a> {
     pub(crate) unlit: &'a Prepared,
     /// Whether there is light.
     pub(crate) is_lit: bool,
+    /// By what its texels are lit as they are swept: a relief on what is curved, under suns and a sky.
+    pub(crate) swept: Option<Swept>,
     /// Where its light is baked.
     pub(crate) baked: Option<LitPiece<'a>>,
+}
+
+/// Lights of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Swept {
+    /// A bit for each sun.
+    pub(crate) suns: u64,
+    /// Whether the sky is one of them.
+    pub(crate) has_sky: bool,
 }
 
 /// A side of a flat piece whose light is baked.
@@ -51,7 +62,7 @@ impl Ground<'_> {
 
     /// Whether lights are evaluated place by place.
     pub(crate) fn asks_for_lights(&self) -> bool {
-        self.is_lit && self.baked.is_none()
+        self.is_lit && self.baked.is_none() && self.swept.is_none()
     }
 
     /// The colour of a surface's texel as the material shows it.
@@ -90,7 +101,7 @@ pub(super) fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
 
 /// The polygon's point at a place of the screen; `None` without lighting.
 pub(super) fn surface_point(planes: &AttributePlanes, [x, y]: [f32; 2]) -> Option<SurfacePoint> {
-    let LitPlanes { position, normal, tangent_u, tangent_v } = planes.lit.as_deref()?;
+    let LitPlanes { position, normal, tangent_u, tangent_v, .. } = planes.lit.as_deref()?;
     let [a, b, c] = planes.inverse_w;
     // Divided once for all twelve coordinates.
     let w = 1.0 / (a * x + b * y + c);

@@ -8,12 +8,14 @@
 //! 4. `raster` adds the colours up to pixels.
 
 mod baked;
+mod curved;
 mod exact;
 mod ground;
 mod prepared;
 mod reflections;
 mod shade;
 mod shadows;
+mod skies;
 
 pub(crate) use prepared::PreparedScene;
 pub(crate) use shade::{ShadeScratch, Shader};

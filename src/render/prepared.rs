@@ -1,9 +1,11 @@
 //! The prepared surface of each material.
 
 use super::baked::Baked;
-use super::ground::Ground;
+use super::ground::{Ground, Swept};
+use super::skies::Skies;
 use crate::filter::Prepared;
-use crate::light::exact::Occluders;
+use crate::light::Disc;
+use crate::light::exact::{Ceiling, Occluders};
 use crate::light::reflection::Reflectance;
 use crate::scene::{Light, Scene};
 use crate::settings::{Lighting, Settings};
@@ -30,6 +32,10 @@ pub(crate) struct PreparedScene {
     reflectance: OnceLock<Reflectance>,
     /// What the truth's light and shadows ask for.
     occluders: OnceLock<Occluders>,
+    /// What curved surfaces ask for: of each sun.
+    ceilings: OnceLock<Vec<Ceiling>>,
+    /// The same of the sky.
+    skies: OnceLock<Skies>,
 }
 
 impl PreparedScene {
@@ -68,8 +74,8 @@ impl PreparedScene {
             })
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
-        let (reflectance, occluders) = Default::default();
-        Self { surfaces, flat, of_material, baked: None, reflectance, occluders }
+        let (reflectance, occluders, ceilings, skies) = Default::default();
+        Self { surfaces, flat, of_material, baked: None, reflectance, occluders, ceilings, skies }
     }
 
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
@@ -93,7 +99,15 @@ impl PreparedScene {
             if baked.has_shadows() {
                 self.occluders(scene);
             }
+            let curved = baked.curved(scene).map(|mesh| mesh.material).collect::<Vec<_>>();
             self.baked = Some((settings.parallax, baked));
+            if !curved.is_empty() && settings.filter.traits().asks_for_lights {
+                self.ceilings(scene);
+                self.skies(scene);
+                for material in curved {
+                    self.of_material(material, settings.parallax).map(Prepared::horizons);
+                }
+            }
         } else {
             self.baked = None;
         }
@@ -116,6 +130,30 @@ impl PreparedScene {
     /// The triangles of the scene that this was made for.
     pub(crate) fn occluders(&self, scene: &Scene) -> &Occluders {
         self.occluders.get_or_init(|| Occluders::new(scene))
+    }
+
+    /// What may hide each sun from curved surfaces; nothing else than suns shines there.
+    pub(crate) fn ceilings(&self, scene: &Scene) -> &[Ceiling] {
+        self.ceilings.get_or_init(|| {
+            let Some((_, baked)) = &self.baked else { return Vec::new() };
+            let triangles = self.occluders(scene).triangles();
+            let ceiling = |light: &Light| {
+                let Light::Sun { to_light, angular_size, .. } = *light else { return None };
+                let disc = Disc::new(to_light.normalize_or_zero(), angular_size);
+                Some(Ceiling::new(
+                    disc,
+                    triangles.iter(),
+                    baked.curved(scene).flat_map(|mesh| mesh.positions.iter().copied()),
+                ))
+            };
+            scene.lights.iter().filter_map(ceiling).collect()
+        })
+    }
+
+    /// What of the sky gets to curved meshes.
+    pub(crate) fn skies(&self, scene: &Scene) -> &Skies {
+        let is_curved = |mesh: usize| self.baked.as_ref().is_some_and(|(_, b)| b.is_curved(mesh));
+        self.skies.get_or_init(|| Skies::new(scene, self.occluders(scene), is_curved))
     }
 
     /// The group in which a triangle is shaded, by the index of its mesh and in it.
@@ -143,7 +181,14 @@ impl PreparedScene {
             baked.map_or((unlit, None), |(prepared, baked)| (prepared, Some(baked)));
         let is_lit = settings.lighting == Lighting::Lit;
         let material = &scene.materials[material];
-        Some(Ground { material, prepared, unlit, is_lit, baked })
+        let is_swept = scene.lights.len() <= 64
+            && self.baked.is_some()
+            && baked.is_none()
+            && settings.filter.traits().asks_for_lights
+            && prepared.field().is_some()
+            && prepared.surface().has_normals();
+        let swept = is_swept.then_some(Swept { suns: u64::MAX, has_sky: true });
+        Some(Ground { material, prepared, unlit, is_lit, swept, baked })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

@@ -48,7 +48,7 @@ impl Shader<'_> {
         lights.clear();
         self.list_lights((block, pairs.clone()), lights);
         filtered.resize(pairs.len(), Filtered::default());
-        let batch = Batch { pixels: footprints, lights, is_alone: false };
+        let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
         self.count(mips.colors(ground.unlit, &batch, filter, filtered));
         // The lights come in the order in which they were listed.
         let mut lights = lights.iter();

@@ -1,5 +1,6 @@
 //! The colours of a block of quads: footprints, filter, light.
 
+use super::curved::CurvedLights;
 use super::exact::Exact;
 use super::ground::{Ground, in_lanes, pixel_center, surface_point};
 use super::prepared::PreparedScene;
@@ -89,9 +90,15 @@ impl<'a> Shader<'a> {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
         let start = colors.len();
-        self.textured(&ground, block, &mut scratch, colors);
+        if let Some(swept) = ground.swept {
+            self.swept(&ground, swept, block, &mut scratch, colors);
+        } else {
+            self.textured(&ground, block, &mut scratch, colors);
+        }
         if let Some(lit) = ground.baked {
             self.shadow(&ground, &lit, block, &mut scratch, &mut colors[start..]);
+        }
+        if ground.baked.is_some() || ground.swept.is_some() {
             self.reflect(&ground, block, &mut scratch, &mut colors[start..]);
         }
     }
@@ -149,7 +156,19 @@ impl<'a> Shader<'a> {
         // Filter all pairs at once, so that pixels near each other can share work.
         // Whatever an earlier block left stays: each covered pixel is written, others are not looked at.
         filtered.resize(pairs.len(), Filtered::default());
-        let batch = Batch { pixels: footprints, lights, is_alone: false };
+        let curved_lights;
+        let curved = if let Some(swept) = ground.swept {
+            curved_lights = CurvedLights::new(
+                (self.scene, self.prepared.skies(self.scene)),
+                swept,
+                block,
+                pairs.clone(),
+            );
+            Some(curved_lights.all())
+        } else {
+            None
+        };
+        let batch = Batch { pixels: footprints, lights, curved: curved.as_ref(), is_alone: false };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
         if ground.asks_for_lights() {
             // Light the means; the lights come in the order in which they were listed.
@@ -204,7 +223,7 @@ impl<'a> Shader<'a> {
             self.cast(ground, pair, groups, scratch);
             let ShadeScratch { filter, footprints, lights, filtered } = &mut *scratch;
             filtered.resize(footprints.len(), Filtered::default());
-            let batch = Batch { pixels: footprints, lights, is_alone: false };
+            let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
             self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
             // Sum up what the samples see, one by one in their order, so that the bits are always
             // equal.

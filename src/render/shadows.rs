@@ -15,12 +15,12 @@
 
 use super::ground::{Ground, LitPiece};
 use super::shade::{ShadeScratch, Shader};
-use crate::light::Disc;
-use crate::light::exact::{Occluders, Receiver};
+use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
+use crate::light::{Disc, FrameLanes};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
 use crate::relief::{displacement, march};
 use crate::scene::{Light, Scene};
-use crate::simd::PixelLanes;
+use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
 
 /// Rays of a pixel to each sun; a square number.
@@ -39,6 +39,9 @@ struct Hidden {
     directions: Vec<Vec3>,
     /// From the block's middle.
     triangles: Vec<[Vec3; 3]>,
+    /// Two axes across the light, and how far each triangle reaches along them, widened by the disc.
+    across: [Vec3; 2],
+    outlines: Vec<[[f32; 2]; 2]>,
 }
 
 impl Shader<'_> {
@@ -75,31 +78,152 @@ fn hidden_suns(
     (ground, lit): (&Ground, &LitPiece),
     block: &QuadBlock,
 ) -> Option<Vec<Vec<PixelLanes>>> {
-    let points: Vec<_> =
-        block.pairs().map(|pair| places(&pair, ground, lit)).collect::<Option<_>>()?;
-    let of_lane =
-        |vectors: &Vectors, lane: usize| Vec3::from(vectors.map(|axis| axis.as_array()[lane]));
+    let normal = lit.normal.to_array().map(PixelLanes::splat);
+    let points: Vec<_> = block
+        .pairs()
+        .map(|pair| Some(places(&pair, ground, &pair.lit()?, &normal)))
+        .collect::<Option<_>>()?;
     let relief = points
         .iter()
         .zip(block.pairs())
         .flat_map(|(points, pair)| pair.covered().map(move |lane| of_lane(&points.relief, lane)));
     let polygon = of_lane(&points.first()?.polygon, 0);
     let receiver = Receiver::new(relief, lit.normal, polygon)?;
+    let suns = between(scene, occluders, &receiver)?;
+    let of_sun = |sun: &Hidden| points.iter().map(|p| sun.share(p, receiver.middle)).collect();
+    Some(suns.iter().map(of_sun).collect())
+}
+
+/// The triangles that may hide each of the suns from a receiver; `None` if there are none.
+fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<Vec<Hidden>> {
     let suns: Vec<_> = scene
         .lights
         .iter()
         .map(|light| {
             let Light::Sun { to_light, angular_size, .. } = *light else { return None };
             let disc = Disc::new(to_light.normalize_or_zero(), angular_size);
-            let triangles = occluders.between(&receiver, &disc);
-            Some(Hidden { directions: disc.points(RAYS).collect(), triangles })
+            let triangles = occluders.between(receiver, &disc);
+            Some(Hidden::new(&disc, triangles))
         })
         .collect::<Option<_>>()?;
-    if suns.iter().all(|sun| sun.triangles.is_empty()) {
-        return None;
+    if std::env::var("DBG").is_ok() {
+        eprintln!("L {}", suns[0].triangles.len());
     }
-    let of_sun = |sun: &Hidden| points.iter().map(|p| sun.share(p, receiver.middle)).collect();
-    Some(suns.iter().map(of_sun).collect())
+    suns.iter().any(|sun| !sun.triangles.is_empty()).then_some(suns)
+}
+
+impl Shader<'_> {
+    /// The parts of each sun that are not seen from the pixels of a block of a curved surface: sun
+    /// by sun, pair by pair.
+    pub(super) fn hidden_on_curved(
+        &self,
+        ground: &Ground,
+        block: &QuadBlock,
+    ) -> Vec<Vec<PixelLanes>> {
+        let occluders = self.prepared.occluders(self.scene);
+        let rays = block.pairs().filter_map(|pair| ViewRays::new(self.scene, ground, &pair));
+        let rays: Vec<_> = rays.collect();
+        let of_sun = |ceiling: &Ceiling| {
+            let mut hidden = vec![PixelLanes::ZERO; rays.len()];
+            let up = ceiling.axes()[2];
+            let mut open = Vec::new();
+            for (i, rays) in rays.iter().enumerate() {
+                // What turns away from a sun is dark without any shadow.
+                let facing = along(&rays.normal, up).to_array();
+                let is_lit = set_bits(rays.covered).any(|lane| facing[lane] > 0.0);
+                if is_lit && !ceiling.is_clear(&rays.spots(ceiling.axes())) {
+                    let pair = block.pair(i);
+                    if let Some(lit) = pair.lit() {
+                        open.push((i, places(&pair, ground, &lit, &rays.normal), rays.normal));
+                    }
+                }
+            }
+            hide(occluders, ceiling, &open, &mut hidden);
+            hidden
+        };
+        self.prepared.ceilings(self.scene).iter().map(of_sun).collect()
+    }
+}
+
+/// Sets the parts of a sun that are not seen from places of pairs, by their numbers, whose unit
+/// normals are given.
+fn hide(
+    occluders: &Occluders,
+    ceiling: &Ceiling,
+    pairs: &[(usize, Places, Vectors)],
+    hidden: &mut [PixelLanes],
+) {
+    let (mut normal, mut points, mut reach) = (Vec3::ZERO, Vec::new(), f32::INFINITY);
+    for (_, places, normals) in pairs {
+        for lane in set_bits(places.covered) {
+            normal += of_lane(normals, lane);
+            points.push(of_lane(&places.relief, lane));
+            reach = reach.min(places.reach.as_array()[lane]);
+        }
+    }
+    let Some(receiver) = Receiver::curved(&points, normal.normalize_or_zero(), reach) else {
+        return;
+    };
+    let disc = ceiling.disc();
+    let sun = Hidden::new(&disc, occluders.between(&receiver, &disc));
+    pairs.iter().for_each(|(i, places, _)| hidden[*i] = sun.share(places, receiver.middle));
+}
+
+/// The view rays of a pair on a curved surface, between the polygon and the deepest relief.
+struct ViewRays {
+    /// Where they pass the polygon, and from there down.
+    polygon: Vectors,
+    way: Vectors,
+    /// Unit normals on the eye's side.
+    normal: Vectors,
+    /// See [`Places`].
+    steps: [Vectors; 2],
+    reach: PixelLanes,
+    covered: u8,
+}
+
+impl ViewRays {
+    fn new(scene: &Scene, ground: &Ground, pair: &QuadPair) -> Option<Self> {
+        let LitLanes { position, normal, tangent_u, tangent_v } = pair.lit()?;
+        let frame = FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
+        let normal = frame.axes[2];
+        let relief_depth = ground.prepared.surface().relief_depth();
+        let moved = displacement(&pair.view(), relief_depth);
+        let across = cross(&tangent_u, &tangent_v);
+        let down = dot(&across, &across).sqrt().sqrt() * relief_depth;
+        let way =
+            [0, 1, 2].map(|i| tangent_u[i] * moved[0] + tangent_v[i] * moved[1] - down * normal[i]);
+        let covered = pair.covered_bits();
+        let steps = steps(&position);
+        Some(Self { polygon: position, way, normal, steps, reach: down * 2.0, covered })
+    }
+
+    /// All of their points by the axes across a light and to it. Own triangles lie about as high as
+    /// where the rays pass them: within the reach above is what may only touch the relief.
+    fn spots(&self, axes: [Vec3; 3]) -> Spots {
+        let range = |from: PixelLanes, to: PixelLanes| {
+            let [least, most] = [from.fast_min(to), from.fast_max(to)].map(PixelLanes::to_array);
+            set_bits(self.covered)
+                .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
+        };
+        let [x, y, up] = axes.map(|axis| {
+            let (from, way) = (along(&self.polygon, axis), along(&self.way, axis));
+            let half =
+                (along(&self.steps[0], axis).abs() + along(&self.steps[1], axis).abs()) * 0.5;
+            let ([a, b], [c, d]) = (range(from - half, from + half), range(from + way, from));
+            ([a.min(c), b.max(d)], b)
+        });
+        let reach = range(self.reach, self.reach)[0];
+        Spots { across: [x.0, y.0], lowest: up.0[0], own: up.1 + reach }
+    }
+}
+
+fn of_lane(vectors: &Vectors, lane: usize) -> Vec3 {
+    Vec3::from(vectors.map(|axis| axis.as_array()[lane]))
+}
+
+fn along(v: &Vectors, axis: Vec3) -> PixelLanes {
+    v[0] * axis.x + v[1] * axis.y + v[2] * axis.z
 }
 
 /// Where the pixels of a pair are in the world.
@@ -113,28 +237,44 @@ struct Places {
     /// How far above a ray's start a triangle hides nothing that it passes from behind: its own
     /// polygon, or one that stands on it. See [`LightRay::reach`](crate::light::exact::LightRay).
     reach: PixelLanes,
+    /// Which of the pixels are covered.
+    covered: u8,
 }
 
-fn places(pair: &QuadPair, ground: &Ground, lit: &LitPiece) -> Option<Places> {
-    let LitLanes { position, tangent_u, tangent_v, .. } = pair.lit()?;
+impl Places {
+    /// How far along an axis points over the covered pixels around `from` lie.
+    fn range(&self, from: &Vectors, axis: Vec3) -> [f32; 2] {
+        let half = (along(&self.steps[0], axis).abs() + along(&self.steps[1], axis).abs()) * 0.5;
+        let middle = along(from, axis);
+        let [least, most] = [middle - half, middle + half].map(PixelLanes::to_array);
+        set_bits(self.covered)
+            .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
+    }
+}
+
+/// How far a point moves from a column of pixels to the next, and a row.
+fn steps(position: &Vectors) -> [Vectors; 2] {
     // Pixels of a quad: lanes 0 and 1 side by side, 0 and 2 one above the other.
-    let step = |by: usize| {
+    [1, 2].map(|by| {
         position.map(|axis| {
             let axis = axis.to_array();
             PixelLanes::new(std::array::from_fn(|lane| {
                 axis[lane / 4 * 4 + by] - axis[lane / 4 * 4]
             }))
         })
+    })
+}
+
+fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Places {
+    let LitLanes { position, tangent_u, tangent_v, .. } = *lit;
+    let all = Places {
+        relief: position,
+        polygon: position,
+        steps: steps(&position),
+        reach: PixelLanes::ZERO,
+        covered: pair.covered_bits(),
     };
-    let steps = [step(1), step(2)];
-    let Some(field) = ground.prepared.field() else {
-        return Some(Places {
-            relief: position,
-            polygon: position,
-            steps,
-            reach: PixelLanes::ZERO,
-        });
-    };
+    let Some(field) = ground.prepared.field() else { return all };
     let along = displacement(&pair.view(), field.relief_depth);
     let depth = march(field, &pair.uv, &along);
     // The world length of a repeat, by which relief goes down.
@@ -143,20 +283,39 @@ fn places(pair: &QuadPair, ground: &Ground, lit: &LitPiece) -> Option<Places> {
     let down = depth * repeat * field.relief_depth;
     let relief = [0, 1, 2].map(|i| {
         let moved = (tangent_u[i] * along[0] + tangent_v[i] * along[1]) * depth;
-        position[i] + moved - down * lit.normal[i]
+        position[i] + moved - down * normal[i]
     });
-    let reach = repeat * (2.0 * field.relief_depth);
-    Some(Places { relief, polygon: position, steps, reach })
+    Places { relief, reach: repeat * (2.0 * field.relief_depth), ..all }
 }
 
 impl Hidden {
+    /// Of a sun's disc and the triangles that may hide it, from a block's middle.
+    fn new(disc: &Disc, triangles: Vec<[Vec3; 3]>) -> Self {
+        let across = <[Vec3; 2]>::from(disc.to_middle.any_orthonormal_pair());
+        let outline = |triangle: &[Vec3; 3]| {
+            // The farther a triangle is, the farther apart are the rays to all of the disc.
+            let far = triangle.iter().fold(0.0_f32, |far, corner| far.max(corner.length()));
+            let more = far * disc.radius;
+            across.map(|axis| {
+                let [a, b, c] = triangle.map(|corner| axis.dot(corner));
+                [a.min(b).min(c) - more, a.max(b).max(c) + more]
+            })
+        };
+        let outlines = triangles.iter().map(outline).collect();
+        Self { directions: disc.points(RAYS).collect(), across, triangles, outlines }
+    }
+
     /// The part of the sun that pixels do not see.
     fn share(&self, places: &Places, middle: Vec3) -> PixelLanes {
         if self.triangles.is_empty() {
             return PixelLanes::ZERO;
         }
         let from = [0, 1, 2].map(|i| places.relief[i] - middle[i]);
-        let hidden = |sum, ray| sum + self.is_hidden(&from, places, ray);
+        let near = self.near(&from, places);
+        if near.is_empty() {
+            return PixelLanes::ZERO;
+        }
+        let hidden = |sum, ray| sum + self.is_hidden(&near, &from, places, ray);
         let count = FIRST.into_iter().fold(PixelLanes::ZERO, hidden);
         let most = FIRST.len() as f32;
         let is_edge = count.simd_gt(PixelLanes::ZERO) & count.simd_lt(PixelLanes::splat(most));
@@ -167,17 +326,37 @@ impl Hidden {
         is_edge.select(all * (1.0 / RAYS as f32), count * (1.0 / most))
     }
 
+    /// The triangles that cover a pixel of a pair as the sun sees them.
+    fn near(&self, from: &Vectors, places: &Places) -> Vec<&[Vec3; 3]> {
+        let ranges = self.across.map(|axis| places.range(from, axis));
+        let is_near = |outline: &[[f32; 2]; 2]| {
+            outline.iter().zip(&ranges).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1])
+        };
+        let all = self.triangles.iter().zip(&self.outlines);
+        all.filter(|(_, outline)| is_near(outline)).map(|(triangle, _)| triangle).collect()
+    }
+
     /// 1 where a triangle hides a point of the sun, else 0.
-    fn is_hidden(&self, from: &Vectors, places: &Places, ray: usize) -> PixelLanes {
+    fn is_hidden(
+        &self,
+        triangles: &[&[Vec3; 3]],
+        from: &Vectors,
+        places: &Places,
+        ray: usize,
+    ) -> PixelLanes {
         // Over the pixel in rows and columns, over the disc in another order, so that no part of
         // the one goes with a part of the other.
         const SIDE: usize = 4;
         let [x, y] = [ray % SIDE, ray / SIDE].map(|i| (i as f32 + 0.5) / SIDE as f32 - 0.5);
         let direction = self.directions[ray * 7 % RAYS];
         let from = [0, 1, 2].map(|i| from[i] + places.steps[0][i] * x + places.steps[1][i] * y);
-        let hits = self.triangles.iter().fold(PixelLanes::ZERO, |hits, triangle| {
-            hits | passes(&from, direction, triangle, places.reach)
-        });
+        let mut hits = PixelLanes::ZERO;
+        for triangle in triangles {
+            hits |= passes(&from, direction, triangle, places.reach);
+            if hits.all() {
+                break;
+            }
+        }
         hits.select(PixelLanes::ONE, PixelLanes::ZERO)
     }
 }

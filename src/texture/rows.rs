@@ -44,12 +44,12 @@ const BLOCK: usize = 16;
 
 impl Rows {
     /// Rows of texels that are given row by row.
-    pub(super) fn new(
+    pub(crate) fn new<const N: usize>(
         width: usize,
         height: usize,
         wrap: Wrap,
         num_planes: usize,
-        texels: &[PackedTexel],
+        texels: &[[u32; N]],
     ) -> Self {
         Self::filled([width, height], wrap, num_planes, 1, |y, plane, lines| {
             let texels = &texels[y * width..][..width];
@@ -58,7 +58,7 @@ impl Rows {
     }
 
     /// The same texels with rows that run along columns.
-    pub(super) fn turned(&self) -> Self {
+    pub(crate) fn turned(&self) -> Self {
         Self::filled(
             [self.height, self.width],
             self.wrap,

@@ -7,6 +7,7 @@
 //!   bin 0   | mean | mean |         begins at the seen place `begin`
 //! ```
 
+use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::sweep_frame::SweepFrame;
 use crate::simd::LineLanes;
@@ -46,6 +47,8 @@ pub(super) struct Grid<'a> {
     pub(super) num_bins: usize,
     /// Whether lines are read half way between rows, too.
     pub(super) has_halves: bool,
+    /// What shines on texels, where a curved surface is lit.
+    pub(super) light: Option<&'a PatchLight<'a>>,
 }
 
 /// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then

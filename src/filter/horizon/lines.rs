@@ -13,7 +13,7 @@ use super::grid::Grid;
 use super::sweep_frame::SweepFrame;
 use super::walk::Texels;
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, halves, i32x16, join, line_indices};
-use crate::texture::{FULL_F32, unpack_normals};
+use crate::texture::{FULL_F32, Rows, unpack_normals};
 
 /// Most steps of a block: their numbers, and that of the step before, are bits of a word.
 pub(super) const MOST_STEPS: usize = 31;
@@ -37,6 +37,8 @@ pub(super) struct Steps {
     offsets: [f32; SLOTS],
     /// Where the runs of texels start among the level's words; half way between rows there are two.
     starts: [[usize; SLOTS]; 2],
+    /// The same among the words of horizons, where texels are lit.
+    horizons: [[usize; SLOTS]; 2],
 }
 
 impl Steps {
@@ -50,12 +52,14 @@ impl Steps {
             scales: [0.0; SLOTS],
             offsets: [0.0; SLOTS],
             starts: [[0; SLOTS]; 2],
+            horizons: [[0; SLOTS]; 2],
         }
     }
 }
 
 /// A group of lines of a grid. `HALVES`: they are read half way between rows, too.
-pub(super) struct Lines<'a, const HALVES: bool> {
+pub(super) struct Lines<'a, const HALVES: bool, const LIT: bool> {
+    grid: &'a Grid<'a>,
     frame: &'a SweepFrame<'a>,
     most_scale: f32,
     /// The first line's `xi`, and how far from it the others lie.
@@ -101,16 +105,17 @@ impl SeenAt {
     }
 }
 
-impl<'a, const HALVES: bool> Lines<'a, HALVES> {
+impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
     /// Steps a row.
     pub(super) const STEPS: i32 = if HALVES { 2 } else { 1 };
 
-    pub(super) fn new(grid: &Grid<'a>, first: usize) -> Self {
+    pub(super) fn new(grid: &'a Grid<'a>, first: usize) -> Self {
         let frame = grid.frame;
         let others = line_indices() * grid.spacing;
         let xi = first as f32 * grid.spacing + grid.first;
         let depths = (others + xi) * frame.tilt + frame.depth;
         Self {
+            grid,
             frame,
             most_scale: grid.most_scale,
             xi,
@@ -167,13 +172,17 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
             steps.scales[first..first + 16].copy_from_slice(scale.as_array());
             steps.offsets[first..first + 16].copy_from_slice((x - left).as_array());
             let columns = left.fast_trunc_int();
-            let starts = |rows_: i32x16| rows.starts_at(columns, rows_ * i32x16::splat(self.sign));
-            if HALVES {
-                let [near, far] = [0, 1].map(|i| starts((numbers + i32x16::splat(i)) >> 1_i32));
-                steps.starts[0][first..first + 16].copy_from_slice(&near);
-                steps.starts[1][first..first + 16].copy_from_slice(&far);
-            } else {
-                steps.starts[0][first..first + 16].copy_from_slice(&starts(numbers));
+            let starts = |rows: &Rows, to: &mut [[usize; SLOTS]; 2]| {
+                for (i, to) in to.iter_mut().enumerate().take(Self::STEPS as usize) {
+                    let numbers =
+                        if HALVES { (numbers + i32x16::splat(i as i32)) >> 1_i32 } else { numbers };
+                    let starts = rows.starts_at(columns, numbers * i32x16::splat(self.sign));
+                    to[first..first + 16].copy_from_slice(&starts);
+                }
+            };
+            starts(rows, &mut steps.starts);
+            if let (true, Some(light)) = (LIT, self.grid.light) {
+                starts(light.rows, &mut steps.horizons);
             }
         }
     }
@@ -204,9 +213,10 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
     ) -> Texels<CHANNELS> {
         let between = self.between(steps, i);
         let [near, far] = &steps.starts;
-        let mut values = self.values(near[i], &between);
+        let at = |half: usize| [steps.starts[half][i], steps.horizons[half][i]];
+        let mut values = self.values(at(0), &between, steps.places[i]);
         if HALVES && near[i] != far[i] {
-            let others = self.values::<CHANNELS>(far[i], &between);
+            let others = self.values::<CHANNELS>(at(1), &between, steps.places[i]);
             (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
         }
         Texels { values, place: steps.places[i] }
@@ -216,8 +226,9 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
     #[inline(always)]
     fn values<const CHANNELS: usize>(
         &self,
-        start: usize,
+        [start, horizons]: [usize; 2],
         between: &Between,
+        place: LineLanes,
     ) -> [LineLanes; CHANNELS] {
         let rows = self.frame.rows;
         let (words, stride) = (rows.words(), rows.stride());
@@ -225,7 +236,11 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
         let [red, green] = between.halves_at(words, start);
         let [blue, _] = between.halves_at(words, start + stride);
         values[..3].copy_from_slice(&[red, green, blue]);
-        if CHANNELS > 3 && rows.has_normals() {
+        if let (true, Some(light)) = (LIT, self.grid.light) {
+            let p = place * self.grid.step + self.grid.begin;
+            let shown = light.at(horizons, between, [self.others + self.xi, p]);
+            (0..3).for_each(|c| values[c] = values[c] * shown[c]);
+        } else if CHANNELS > 3 && rows.has_normals() {
             let [near, far] = between.words_at(words, start + 2 * stride).map(|words| {
                 let [a, b] = halves(words).map(unpack_normals);
                 [0, 1, 2].map(|i| join([a[i], b[i]]))

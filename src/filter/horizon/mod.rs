@@ -25,6 +25,7 @@
 mod grid;
 mod kernel;
 mod lines;
+mod lit;
 mod patch;
 mod pixels;
 mod plan;
@@ -74,12 +75,14 @@ pub(super) fn colors(
     out: &mut [Filtered],
 ) -> Work {
     let surface = prepared.surface();
-    let far = far_field(prepared, horizon, batch.is_lit());
+    let is_curved = batch.curved.is_some();
+    let far = far_field(prepared, horizon, batch.is_lit() || is_curved);
     let far = far.as_deref();
     let num_bins = if batch.is_alone { FINE_BINS } else { picture_bins(horizon, batch.is_lit()) };
     let mut lights = batch.lights;
     let mut num_rows = 0;
-    for (pixels, out) in batch.pixels.chunks(NUM_VECTORS).zip(out.chunks_mut(NUM_VECTORS)) {
+    let chunks = batch.pixels.chunks(NUM_VECTORS).zip(out.chunks_mut(NUM_VECTORS));
+    for (i, (pixels, out)) in chunks.enumerate() {
         let HorizonScratch { patch, base, shares, near, found } = scratch;
         base_ellipses(surface, pixels, horizon, base);
         share_out(surface, far, (pixels, base), horizon, (shares, near));
@@ -88,8 +91,12 @@ pub(super) fn colors(
         found.resize(near.len(), Texel::default());
         // Lit frames have no tables: all covered pixels are near, and the next lights are theirs.
         let (of_these, others) = lights.split_at(if lights.is_empty() { 0 } else { near.len() });
+        let curved = batch.curved.map(|curved| curved.part(i * NUM_VECTORS, pixels.len()));
+        let light = curved.as_ref().and_then(|curved| Some((curved, prepared.horizons()?)));
         let patches = Patches {
             is_alone: batch.is_alone,
+            light,
+            least_bias: usize::from(batch.is_lit() || is_curved || prepared.is_lit()),
             ..patches(prepared, (pixels, base), horizon, num_bins, batch.is_lit())
         };
         num_rows += patches.means(near, of_these, patch, found);
@@ -208,5 +215,16 @@ fn patches<'a>(
     // mixes the two shows it. Baked, a floor under a sun at 30 degrees has 41.3 dB without.
     let least_bias = usize::from(is_lit || prepared.is_lit());
     let surface = prepared.surface();
-    Patches { surface, loss, pixels, base, horizon, num_bins, is_lit, least_bias, is_alone: false }
+    Patches {
+        surface,
+        loss,
+        light: None,
+        pixels,
+        base,
+        horizon,
+        num_bins,
+        is_lit,
+        least_bias,
+        is_alone: false,
+    }
 }

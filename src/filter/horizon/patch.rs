@@ -6,13 +6,14 @@
 
 use super::grid::Profile;
 use super::kernel::Totals;
+use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::plan::{Extent, Plan, WIDEST, in_whole_groups};
 use super::sweep_frame::{SweepFrame, means};
 use crate::filter::points;
 use crate::footprint::levels::{SweepExtent, for_sweep};
 use crate::footprint::{Ellipses, Footprints};
-use crate::light::LocalLights;
+use crate::light::{Curved, Horizons, LocalLights};
 use crate::relief::LevelLoss;
 use crate::settings::Horizon;
 use crate::simd::{PixelLanes, bits_mask};
@@ -65,6 +66,8 @@ pub(super) struct Patches<'a> {
     pub(super) surface: &'a Surface,
     /// Where a level loses too much of what hides; `None` under lights.
     pub(super) loss: Option<&'a LevelLoss>,
+    /// The lights of the pixels and what hides them, where a curved surface is lit.
+    pub(super) light: Option<(&'a Curved<'a>, &'a Horizons)>,
     /// The pixels, eight a vector.
     pub(super) pixels: &'a [Footprints],
     /// Their ellipses in texels of the base level.
@@ -198,9 +201,13 @@ impl<'a> Patches<'a> {
         totals.clear();
         totals.resize(picks.len(), Totals::default());
         let num_rows = if self.is_lit {
-            plan.run(lit, pixels, lights, totals)
+            plan.run::<6, false>(lit, pixels, (lights, None), totals)
+        } else if let Some((curved, horizons)) = self.light {
+            let rows = horizons.rows(plan.level, plan.frame.is_turned);
+            let light = PatchLight::new(curved, rows, picks, pixels);
+            plan.run::<3, true>(unlit, pixels, (&[], Some(&light)), totals)
         } else {
-            plan.run(unlit, pixels, &[], totals)
+            plan.run::<3, false>(unlit, pixels, (&[], None), totals)
         };
         for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
             // Where no line meets the ellipse, the texels around the base place stand for it.

@@ -2,6 +2,7 @@
 
 use super::grid::{GROUP, Grid, MOST_LINES, Profile};
 use super::kernel::Totals;
+use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::sweep_frame::SweepFrame;
 use crate::light::LocalLights;
@@ -79,11 +80,11 @@ impl Extent {
 
 impl Plan<'_> {
     /// Sweeps all lines and adds what they see to the pixels. Returns the number of rows.
-    pub(super) fn run<const CHANNELS: usize>(
+    pub(super) fn run<const CHANNELS: usize, const LIT: bool>(
         &self,
         profile: &mut Profile<CHANNELS>,
         pixels: &[PixelOnLines],
-        lights: &[LocalLights],
+        (lights, light): (&[LocalLights], Option<&PatchLight>),
         totals: &mut [Totals],
     ) -> u64 {
         let Extent { xi, q, .. } = self.extent;
@@ -110,10 +111,11 @@ impl Plan<'_> {
                 inverse_step: 1.0 / self.step,
                 num_bins,
                 has_halves,
+                light,
             };
             for (group, range) in grid.ranges(pixels).into_iter().enumerate() {
                 if range[0] < range[1] {
-                    num_rows += profile.sweep(&grid, group, range);
+                    num_rows += profile.sweep::<LIT>(&grid, group, range);
                 }
             }
             // A pixel's lines may lie on several grids: the totals go on, in this order everywhere.

@@ -22,16 +22,21 @@ const FEW_STEPS: usize = 8;
 impl<const CHANNELS: usize> Profile<CHANNELS> {
     /// Sweeps the lines of a group over the bins between two seen places. Returns the number of
     /// steps.
-    pub(super) fn sweep(&mut self, grid: &Grid, group: usize, range: [f32; 2]) -> u64 {
+    pub(super) fn sweep<const LIT: bool>(
+        &mut self,
+        grid: &Grid,
+        group: usize,
+        range: [f32; 2],
+    ) -> u64 {
         if grid.has_halves {
-            self.sweep_by::<true>(grid, group, range)
+            self.sweep_by::<true, LIT>(grid, group, range)
         } else {
-            self.sweep_by::<false>(grid, group, range)
+            self.sweep_by::<false, LIT>(grid, group, range)
         }
     }
 
     #[inline(never)]
-    fn sweep_by<const HALVES: bool>(
+    fn sweep_by<const HALVES: bool, const LIT: bool>(
         &mut self,
         grid: &Grid,
         group: usize,
@@ -45,7 +50,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let first_bin = bin_at(entry).max(0.0) as usize;
         let end_bin = (bin_at(exit).ceil() as usize).clamp(first_bin + 1, grid.num_bins);
         let [start, end] = [first_bin, end_bin].map(|bin| grid.begin + bin as f32 * grid.step);
-        let lines = Lines::<HALVES>::new(grid, group * GROUP);
+        let lines = Lines::<HALVES, LIT>::new(grid, group * GROUP);
         let mut walk = Walk::<CHANNELS>::new(grid.num_lines, group * GROUP, [first_bin, end_bin]);
         let (first, most) = lines.steps_between(start, end);
         let mut steps = Steps::new(first);
@@ -53,7 +58,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let mut num_read = 1;
         // A texel is never seen beyond its own row, so what lies before the exit cannot reach it:
         // these steps are read in long blocks.
-        let num_before = ((end - start) as i32 * Lines::<HALVES>::STEPS) as usize;
+        let num_before = ((end - start) as i32 * Lines::<HALVES, LIT>::STEPS) as usize;
         while !walk.is_done() && num_read < most {
             let num = num_before.saturating_sub(num_read).clamp(FEW_STEPS, MOST_STEPS);
             let seen = lines.read(&mut steps, num, walk.bound());

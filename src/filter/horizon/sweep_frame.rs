@@ -48,7 +48,7 @@ const MOST_GROWTH: f32 = 0.5;
 pub(super) struct SweepFrame<'a> {
     pub(super) rows: &'a Rows,
     /// Whether rows run along v.
-    is_turned: bool,
+    pub(super) is_turned: bool,
     /// Texels a repeat along the rows and across them.
     texels: [f32; 2],
     /// The middle in repeats, and near the origin in texels, along the rows and across; texel centres

@@ -8,7 +8,7 @@ use glam::Vec3;
 /// rounding makes of triangles that lie in it.
 const ROUNDING: f32 = 1e-5;
 
-/// A piece of a flat surface.
+/// A piece of a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
     /// The middle of a box around it.
@@ -19,18 +19,65 @@ pub struct Receiver {
     normal: Vec3,
     /// How far the polygon is above the middle.
     top: f32,
+    /// Where it is curved.
+    own: Option<Own>,
+}
+
+/// Which triangles around a curved piece are its own.
+#[derive(Clone, Copy, Debug)]
+struct Own {
+    /// Its mean unit normal.
+    normal: Vec3,
+    /// How far points lie along it from the middle, the least and the greatest, and across it.
+    range: [f32; 2],
+    radius: f32,
+    /// A triangle that light passes from behind hides nothing that is nearer to its plane.
+    reach: f32,
+}
+
+/// The middle of a box around points, and half its sides.
+fn boxed(points: impl Iterator<Item = Vec3>) -> Option<(Vec3, Vec3)> {
+    let (min, max) = points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), point| {
+        (min.min(point), max.max(point))
+    });
+    let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
+    middle.is_finite().then_some((middle, half))
+}
+
+impl Own {
+    /// Whether light passes a triangle, by its corners from the middle, from behind and near by.
+    fn has(&self, disc: &Disc, [a, b, c]: &[Vec3; 3]) -> bool {
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let (above, up) = (a.dot(normal), self.normal.dot(normal));
+        let across = (normal - self.normal * up).length() * self.radius;
+        let farthest = self.range.map(|at| (above - up * at).abs());
+        disc.to_middle.dot(normal) > 0.0 && farthest[0].max(farthest[1]) + across <= self.reach
+    }
 }
 
 impl Receiver {
-    /// Of points of a relief, whose polygon has a unit normal and holds a point; `None` without
+    /// Of points of a relief on a flat piece, whose polygon has a unit normal and holds a point; `None` without
     /// points.
     pub fn new(points: impl Iterator<Item = Vec3>, normal: Vec3, polygon: Vec3) -> Option<Self> {
-        let (min, max) = points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), point| {
-            (min.min(point), max.max(point))
-        });
-        let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
-        let top = normal.dot(polygon - middle);
-        middle.is_finite().then_some(Self { middle, half, normal, top })
+        let (middle, half) = boxed(points)?;
+        Some(Self { middle, half, normal, top: normal.dot(polygon - middle), own: None })
+    }
+
+    /// Of points around a relief on a curved piece whose mean unit normal is given; `None` without
+    /// points. A triangle that light passes from behind hides nothing that is nearer to its plane
+    /// than `reach`.
+    pub fn curved(points: &[Vec3], normal: Vec3, reach: f32) -> Option<Self> {
+        let (middle, half) = boxed(points.iter().copied())?;
+        let mut own = Own { normal, range: [f32::MAX, f32::MIN], radius: 0.0, reach };
+        for point in points {
+            let from = *point - middle;
+            let up = normal.dot(from);
+            own.range = [own.range[0].min(up), own.range[1].max(up)];
+            own.radius = own.radius.max((from - normal * up).length());
+        }
+        // Its polygons lie in no plane below which nothing hides.
+        let (normal, top) = (Vec3::ZERO, f32::NEG_INFINITY);
+        Some(Self { middle, half, normal, top, own: Some(own) })
     }
 
     /// Whether something in a box, by its middle and half its sides from the receiver's middle, may
@@ -69,6 +116,7 @@ impl Occluders {
                 let distance = a.length().max(b.length()).max(c.length());
                 // Of its box a slanted triangle fills little, so its own height counts.
                 if height > receiver.top + ROUNDING * distance
+                    && !receiver.own.is_some_and(|own| own.has(disc, &[a, b, c]))
                     && receiver.may_be_hidden_by(disc, (min + max) * 0.5, (max - min) * 0.5)
                 {
                     found.push([a, b, c]);

@@ -19,10 +19,12 @@
 //! 1 under a sky of 1 that nothing hides is 1 at every sample.
 
 mod between;
+mod ceiling;
 mod occluders;
 mod sequence;
 
 pub use between::Receiver;
+pub use ceiling::{Ceiling, Spots};
 pub use occluders::{LightRay, Occluders};
 pub use sequence::Sequence;
 

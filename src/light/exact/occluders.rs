@@ -83,6 +83,11 @@ impl Occluders {
         self.split(first + num / 2, end);
     }
 
+    /// All triangles, in the tree's order.
+    pub fn triangles(&self) -> &[[Vec3; 3]] {
+        &self.triangles
+    }
+
     /// Whether a triangle lies between a point and its light.
     pub fn hide(&self, ray: &LightRay) -> bool {
         // Along an axis that the ray does not move along, it is within a slab or never.

@@ -1,0 +1,217 @@
+//! What holds of lit frames of curved meshes, whose texels are lit as they are swept.
+
+mod common;
+
+use basrelief::light::{Horizons, LinearSky};
+use basrelief::relief::LitParts;
+use basrelief::texture::{ColorImage, Surface, SurfaceMaps, srgb_from_linear};
+use basrelief::{
+    Camera, Filter, Frame, Light, Lighting, Material, Mesh, Rays, Renderer, Scene, Settings, Sky,
+    render,
+};
+use common::cobbles;
+use glam::{Vec2, Vec3};
+use std::sync::Arc;
+
+fn lit(filter: Filter) -> Settings {
+    Settings {
+        width: 96,
+        height: 64,
+        msaa: 1,
+        filter,
+        lighting: Lighting::Lit,
+        ..Settings::default()
+    }
+}
+
+/// A unit direction of an angle in eighths of a turn, by bisecting right angles: no sines.
+fn direction(turn: f32) -> Vec2 {
+    let quarter = turn.floor() as usize % 4;
+    let axes = [Vec2::X, Vec2::Y, -Vec2::X, -Vec2::Y];
+    let (mut from, mut to) = (axes[quarter], axes[(quarter + 1) % 4]);
+    let mut part = turn - turn.floor();
+    for _ in 0..12 {
+        let middle = (from + to).normalize();
+        (from, to, part) =
+            if part < 0.5 { (from, middle, part * 2.0) } else { (middle, to, part * 2.0 - 1.0) };
+    }
+    from
+}
+
+/// A torus of outer radius 1.5, flat on the ground, seen from above.
+fn torus(maps: SurfaceMaps, lights: &[Light], sky: Vec3) -> Scene {
+    let (num_around, num_across) = (48, 24);
+    let (mut positions, mut tex_coords) = (Vec::new(), Vec::new());
+    for i in 0..=num_around {
+        let around = direction(4.0 * i as f32 / num_around as f32);
+        for j in 0..=num_across {
+            let across = direction(4.0 * j as f32 / num_across as f32);
+            let radius = 1.0 + 0.5 * across.x;
+            positions.push(Vec3::new(around.x * radius, 0.5 * across.y, -around.y * radius));
+            tex_coords.push(Vec2::new(
+                i as f32 * 6.0 / num_around as f32,
+                j as f32 * 3.0 / num_across as f32,
+            ));
+        }
+    }
+    let at = |i: u32, j: u32| i * (num_across as u32 + 1) + j;
+    let quads = (0..num_around as u32).flat_map(|i| (0..num_across as u32).map(move |j| [i, j]));
+    let triangles = quads.flat_map(|[i, j]| {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    let surface = Arc::new(Surface::new(maps).expect("valid maps"));
+    Scene {
+        meshes: vec![Mesh::new(positions, tex_coords, vec![], triangles.collect())],
+        materials: vec![Material { surface: Some(surface), ..Material::default() }],
+        camera: Camera {
+            eye: Vec3::new(0.0, 2.2, 2.6),
+            target: Vec3::new(0.0, -0.1, 0.0),
+            up: Vec3::Y,
+            fov_degrees: 60.0,
+            near: 0.01,
+        },
+        lights: lights.to_vec(),
+        sky: Sky::Color(sky),
+        background: [0.0; 4],
+        ..Scene::default()
+    }
+}
+
+fn draw(scene: &Scene, filter: Filter) -> Frame {
+    render(scene.clone(), lit(filter)).expect("a valid scene")
+}
+
+/// How near two frames are where both show a surface, as they are encoded.
+fn decibels(a: &Frame, b: &Frame) -> f32 {
+    let both = a.pixels.iter().zip(&b.pixels).filter(|(a, b)| a[3] == 1.0 && b[3] == 1.0);
+    let squares = both.flat_map(|(a, b)| {
+        [0, 1, 2].map(|c| (srgb_from_linear(a[c]) - srgb_from_linear(b[c])).powi(2))
+    });
+    let (sum, num) = squares.fold((0.0, 0.0), |(sum, num), square| (sum + square, num + 1.0));
+    assert!(num > 3000.0, "a part of the picture");
+    -10.0 * (sum / num as f32).log10()
+}
+
+#[test]
+fn a_torus_is_lit_as_the_truth_lights_it() {
+    let suns = [Light::sun(Vec3::new(-0.45, 0.577, -0.9), Vec3::splat(0.8))];
+    for (lights, sky, least) in [
+        (&suns[..], Vec3::ZERO, 30.0),
+        (&[], Vec3::splat(0.8), 32.0),
+        (&suns, Vec3::splat(0.3), 32.0),
+    ] {
+        let scene = torus(cobbles(128, 4), lights, sky);
+        let [swept, truth] = [Filter::default(), Filter::Truth(Rays { samples: 64 })]
+            .map(|filter| draw(&scene, filter));
+        let found = decibels(&swept, &truth);
+        println!("{} suns, sky {sky}: {found} dB", lights.len());
+        assert!(found > least, "{found} dB, {} suns under {sky}", lights.len());
+    }
+}
+
+#[test]
+fn in_a_white_furnace_nothing_shines() {
+    let white = ColorImage::from_fn(64, 64, |_, _| [1.0; 3]);
+    let maps = SurfaceMaps { albedo: Some(white), ..cobbles(64, 4) };
+    let frame = draw(&torus(maps, &[], Vec3::ONE), Filter::default());
+    let seen = frame.pixels.iter().filter(|pixel| pixel[3] == 1.0);
+    let most = seen.flat_map(|pixel| &pixel[..3]).fold(0.0_f32, |most, c| most.max(*c));
+    println!("most {most}");
+    assert!((0.9..1.02).contains(&most), "{most}");
+}
+
+#[test]
+fn suns_add() {
+    let suns = [
+        Light::sun(Vec3::new(1.0, 0.8, 0.5), Vec3::new(0.9, 0.7, 0.5)),
+        Light::sun(Vec3::new(-0.4, 0.3, 1.0), Vec3::new(0.1, 0.3, 0.6)),
+    ];
+    let [a, b, both] = [&suns[..1], &suns[1..], &suns]
+        .map(|lights| draw(&torus(cobbles(64, 4), lights, Vec3::ZERO), Filter::default()));
+    for ((a, b), both) in a.pixels.iter().zip(&b.pixels).zip(&both.pixels) {
+        for c in 0..3 {
+            assert!((a[c] + b[c] - both[c]).abs() < 2e-3, "{a:?} {b:?} {both:?}");
+        }
+    }
+}
+
+#[test]
+fn nothing_gets_to_the_bottom_of_a_torus_on_the_ground() {
+    let mut scene = torus(cobbles(64, 4), &[], Vec3::ONE);
+    let plate = [[-4.0, 4.0], [4.0, 4.0], [4.0, -4.0], [-4.0, -4.0]];
+    let plate = plate.map(|[x, z]| Vec3::new(x, -0.5, z)).to_vec();
+    scene.materials.push(Material::default());
+    let faces = vec![[0, 1, 2], [0, 2, 3]];
+    scene.meshes.push(Mesh { material: 1, ..Mesh::new(plate, vec![], vec![], faces) });
+    // From below, where the plate is culled.
+    scene.camera.eye = Vec3::new(0.0, -2.2, 1.2);
+    let settings = Settings { cull_back_faces: true, ..lit(Filter::default()) };
+    let frame = render(scene, settings).expect("a valid scene");
+    let middle = frame.pixels.iter().filter(|pixel| pixel[3] == 1.0);
+    let darkest = middle.map(|pixel| pixel[1]).fold(f32::MAX, f32::min);
+    println!("darkest {darkest}");
+    assert!(darkest < 0.01, "{darkest}");
+}
+
+#[test]
+fn frames_do_not_depend_on_threads_and_tiles() {
+    let suns = [Light::sun(Vec3::new(-0.45, 0.577, -0.9), Vec3::splat(0.8))];
+    let scene = torus(cobbles(64, 4), &suns, Vec3::splat(0.3));
+    let frame = |threads: usize, tile_size: u32| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let settings = Settings { tile_size, ..lit(Filter::default()) };
+        pool.install(|| Renderer::new(scene.clone(), settings).expect("a valid scene").render())
+    };
+    let expected = frame(1, 32);
+    for (threads, tile_size) in [(2, 16), (7, 64)] {
+        assert!(frame(threads, tile_size).pixels == expected.pixels, "{threads}, {tile_size}");
+    }
+}
+
+#[test]
+fn a_flat_surface_has_the_horizon_of_none() {
+    let surface = Surface::new(SurfaceMaps { height: None, ..cobbles(32, 4) }).expect("valid maps");
+    for word in Horizons::new(&surface).texel(3, 5).iter().take(4) {
+        assert_eq!(*word, 0, "nothing hides");
+    }
+}
+
+#[test]
+fn horizons_say_what_sweeps_along_the_light_say() {
+    let surface = Surface::new(cobbles(64, 4)).expect("valid maps");
+    let horizons = Horizons::new(&surface);
+    for (azimuth, [x, y]) in [(0, [1.0, 0.0]), (6, [-0.5, 0.5]), (12, [0.0, -1.0])] {
+        let length = ((x * x + y * y) as f32).sqrt();
+        for height in [0.15_f32, 0.3, 0.5] {
+            let reach = -surface.relief_depth() * (1.0 - height) / height / length;
+            let parts = LitParts::new(surface.base(), [x * reach, y * reach]);
+            let mut sum = 0.0;
+            for row in 0..64 {
+                let mut lit = Vec::new();
+                parts.row(row, &mut Vec::new(), &mut lit);
+                for (column, lit) in lit.into_iter().enumerate() {
+                    let [x, y] = if parts.is_turned { [row, column] } else { [column, row] };
+                    let word = horizons.texel(x as i32, y as i32)[azimuth / 4];
+                    let root = (word >> (azimuth % 4 * 8) & 0xff) as f32 / 255.0;
+                    let above = if height > root * root { 1.0 } else { 0.0 };
+                    sum += (lit - above).abs();
+                }
+            }
+            let mean = sum / (64.0 * 64.0);
+            println!("azimuth {azimuth}, height {height}: {mean}");
+            assert!(mean < 0.05, "azimuth {azimuth}, height {height}: {mean}");
+        }
+    }
+}
+
+#[test]
+fn linear_skies_are_what_they_are_made_of() {
+    let normal = Vec3::new(0.3, 0.8, -0.2).normalize();
+    let of = |l: Vec3| Vec3::new(0.5 + 0.2 * l.x, 0.4 - 0.3 * l.y, 0.3 + 0.1 * l.z);
+    let sky = LinearSky::new(normal, of);
+    let error = (sky.constant - Vec3::new(0.5, 0.4, 0.3)).abs().max_element();
+    assert!(error < 0.01, "{sky:?}");
+    let error = (sky.irradiance(normal) - of(normal * (2.0 / 3.0))).abs().max_element();
+    assert!(error < 0.005, "{sky:?}");
+}
