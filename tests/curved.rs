@@ -3,7 +3,7 @@
 mod common;
 
 use basrelief::light::{Horizons, LinearSky};
-use basrelief::relief::LitParts;
+use basrelief::relief::{LitParts, RowScratch};
 use basrelief::texture::{ColorImage, Surface, SurfaceMaps, srgb_from_linear};
 use basrelief::{
     Camera, Filter, Frame, Light, Lighting, Material, Mesh, Rays, Renderer, Scene, Settings, Sky,
@@ -185,11 +185,11 @@ fn horizons_say_what_sweeps_along_the_light_say() {
         let length = ((x * x + y * y) as f32).sqrt();
         for height in [0.15_f32, 0.3, 0.5] {
             let reach = -surface.relief_depth() * (1.0 - height) / height / length;
-            let parts = LitParts::new(surface.base(), [x * reach, y * reach]);
+            let parts = LitParts::new(surface.base(), [x * reach, y * reach], surface.relief_depth());
             let mut sum = 0.0;
             for row in 0..64 {
                 let mut lit = Vec::new();
-                parts.row(row, &mut Vec::new(), &mut lit);
+                parts.row(row, &mut RowScratch::default(), &mut lit);
                 for (column, lit) in lit.into_iter().enumerate() {
                     let [x, y] = if parts.is_turned { [row, column] } else { [column, row] };
                     let word = horizons.texel(x as i32, y as i32)[azimuth / 4];

@@ -20,7 +20,7 @@
 //! which are four numbers of the texel, summed over its horizons.
 
 use crate::relief::directions::diamond_direction;
-use crate::relief::{LitParts, MAX_SLOPE};
+use crate::relief::{LitParts, MAX_SLOPE, RowScratch};
 use crate::texture::{Level, Rows, Surface, box_taps};
 use rayon::prelude::*;
 
@@ -116,7 +116,7 @@ impl LitHeights {
             let root = (i as f32 + 0.5) / NUM_HEIGHTS as f32;
             let height = (root * root).max(1.0 / (1.0 + MAX_SLOPE));
             let reach = -relief_depth * (1.0 - height) / height;
-            all.add(&LitParts::new(level, [x * reach, y * reach]));
+            all.add(&LitParts::new(level, [x * reach, y * reach], relief_depth));
         }
         all
     }
@@ -128,8 +128,8 @@ impl LitHeights {
         let length = if lit.is_turned { height } else { width };
         sums.par_chunks_exact_mut(length).enumerate().for_each_init(
             Default::default,
-            |(lines, parts): &mut (Vec<f32>, Vec<f32>), (row, sums)| {
-                lit.row(row, lines, parts);
+            |(scratch, parts): &mut (RowScratch, Vec<f32>), (row, sums)| {
+                lit.row(row, scratch, parts);
                 sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += *part);
             },
         );
