@@ -77,7 +77,7 @@ pub struct Ewa {
     /// [`Formulas::Meant`].
     pub formulas: Formulas,
     /// How finely ellipses are cut, 2 to 64: sixteen times as many of these take a mip level finer,
-    /// and `texel_budget`, which is for 12, grows in proportion. More is finer and slower: 4 is fast,
+    /// and twice as many make `texel_budget`, which is for 12, 2.8 times as large. More is finer and slower: 4 is fast,
     /// 24 nearly as good as it gets but for `every_texel`, with which these do not count. Default:
     /// 12.
     pub lines: u32,

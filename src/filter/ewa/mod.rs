@@ -63,11 +63,11 @@ fn along_axes<const HAS_NORMALS: bool>(
     // Those of lanes that are not covered are left over from others, and not looked at.
     let mut sums = [[[LineLanes::ZERO; 4]; 8]; 2];
     for (pixels, out) in pixels.chunks(AXES_AT_ONCE).zip(out.chunks_mut(AXES_AT_ONCE)) {
-        // Made where they stay: a copy would wait for what was just written.
-        let axes: [LongAxes; AXES_AT_ONCE] = std::array::from_fn(|i| {
-            LongAxes::new(surface, pixels.get(i).unwrap_or(&pixels[0]), ewa)
-        });
-        for ((axes, pixels), out) in axes.iter().zip(pixels).zip(out) {
+        let mut axes = [None; AXES_AT_ONCE];
+        for (axes, pixels) in axes.iter_mut().zip(pixels) {
+            *axes = Some(LongAxes::new(surface, pixels, ewa));
+        }
+        for ((axes, pixels), out) in axes.iter().flatten().zip(pixels).zip(out) {
             for lane in pixels.covered() {
                 let (of_pixel, num) = axes.sums::<HAS_NORMALS>(lane);
                 sums[0][lane] = of_pixel.colors();
