@@ -72,11 +72,7 @@ fn draw(criterion: &mut Criterion) {
                 b.iter(|| {
                     rasterizer.draw(
                         black_box(&geometry),
-                        Drawn {
-                            scene: &scene,
-                            settings: &settings,
-                            group: &|[mesh, _]| scene.meshes[mesh as usize].material as u32,
-                        },
+                        Drawn { scene: &scene, settings: &settings, group: None },
                         &flat,
                         &|| 0.0,
                         &mut frame,

@@ -6,8 +6,8 @@
 //! [`f32x8::fast_min`] and [`f32x8::fast_max`] on values that are not NaN.
 
 use wide::f32x4;
-pub use wide::{f32x8, f32x16, f64x8, i32x8, i32x16, u32x8, u32x16};
-use wide::{i16x16, i16x32, u16x32};
+pub use wide::{f32x8, f32x16, f64x8, i16x32, i32x8, i32x16, u32x8, u32x16};
+use wide::{i16x16, u16x32};
 
 /// Eight pixels: two 2x2 quads, lane `4 * quad + 2 * dy + dx`.
 pub type PixelLanes = f32x8;
@@ -275,6 +275,20 @@ pub fn lane_mask(bits: u32) -> i32x16 {
 pub fn quads_by_pixel(values: [f32x8; 4]) -> [[[f32; 4]; 4]; 2] {
     let values: [[f32x4; 2]; 4] = wide::bytemuck::cast(values);
     [0, 1].map(|quad| wide::bytemuck::cast(f32x4::transpose(values.map(|halves| halves[quad]))))
+}
+
+/// The sum of the lanes of each of eight vectors, in one fixed order on every machine.
+#[inline(always)]
+pub fn sums_of_eight(vectors: [f32x16; 8]) -> f32x8 {
+    let [a, b, c, d, e, f, g, h] =
+        f32x8::transpose(vectors.map(split).map(|[near, far]| near + far));
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
+}
+
+/// Both halves of sixteen words, the lower one of each first, as signed numbers.
+#[inline(always)]
+pub fn as_pairs(words: u32x16) -> i16x32 {
+    wide::bytemuck::cast(words)
 }
 
 /// Sixteen lanes of two vectors of eight.

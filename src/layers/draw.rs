@@ -38,7 +38,7 @@ impl Renderer {
         let hits = Hits { scene, prepared, is_traced, projection: &projection };
         let mut bands = found.bands(&settings);
         let group = |triangle| hits::group(scene, triangle);
-        let drawn = Drawn { scene, settings: &settings, group: &group };
+        let drawn = Drawn { scene, settings: &settings, group: Some(&group) };
         rasterizer.see_centers(geometry, (drawn, has_quads), &mut bands, &|tile, band| {
             let names_asked = band.slots.iter().any(|(layer, _)| layer.is_id());
             for row in tile.rows() {

@@ -74,8 +74,7 @@ pub fn draw(
     let shade = |block: &QuadBlock, colors: &mut Vec<_>| {
         colors.extend(block.pairs().map(|pair| shade(&pair)));
     };
-    let group = |[mesh, _]: [u32; 2]| scene.meshes[mesh as usize].material as u32;
-    let drawn = Drawn { scene, settings, group: &group };
+    let drawn = Drawn { scene, settings, group: None };
     Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, frame)
 }
 
@@ -87,8 +86,8 @@ pub struct Drawn<'a> {
     /// The settings.
     pub settings: &'a Settings,
     /// A number for each triangle, by the index of its mesh and in it: quads of one number, which
-    /// must be of one material, are shaded together.
-    pub group: &'a (dyn Fn([u32; 2]) -> u32 + Sync),
+    /// must be of one material, are shaded together. `None` for that of the material.
+    pub group: Option<&'a (dyn Fn([u32; 2]) -> u32 + Sync)>,
 }
 
 impl Rasterizer {
@@ -156,7 +155,7 @@ pub(super) struct Painter<'a> {
     pub(super) geometry: &'a Geometry,
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a Settings,
-    pub(super) group: &'a (dyn Fn([u32; 2]) -> u32 + Sync),
+    pub(super) group: Option<&'a (dyn Fn([u32; 2]) -> u32 + Sync)>,
     pub(super) grid: TileGrid,
     pub(super) bins: &'a Bins,
     pub(super) clock: &'a (dyn Fn() -> f64 + Sync),
@@ -247,7 +246,8 @@ impl Painter<'_> {
             let ScreenTriangle { mesh, triangle, .. } = *self.geometry.triangle(index);
             triangles.push([mesh, triangle]);
             let material = self.scene.meshes[mesh as usize].material as u32;
-            grounds.push([material, (self.group)([mesh, triangle])]);
+            let group = self.group.map_or(material, |group| group([mesh, triangle]));
+            grounds.push([material, group]);
         }
         // From here on a quad names its triangle by the slot of its planes.
         for quad in quads.iter_mut() {

@@ -172,8 +172,10 @@ impl Renderer {
         let projected = clock();
         let shader = Shader::new(scene, settings, prepared, pool);
         let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
+        // Called for each triangle that is seen: only where that makes a difference.
         let group = |triangle| prepared.group(scene, triangle);
-        let drawn = Drawn { scene, settings, group: &group };
+        let group = prepared.is_baked().then_some(&group as &(dyn Fn(_) -> _ + Sync));
+        let drawn = Drawn { scene, settings, group };
         let counts = rasterizer.draw(geometry, drawn, &shade, clock, frame);
         if let Some(region) = settings.region {
             // The tiles cover whole blocks, which begin a few pixels before the region.

@@ -156,6 +156,11 @@ impl PreparedScene {
         self.skies.get_or_init(|| Skies::new(scene, self.occluders(scene), is_curved))
     }
 
+    /// Whether any piece has its light baked; if none, the groups are the materials.
+    pub(crate) fn is_baked(&self) -> bool {
+        self.baked.is_some()
+    }
+
     /// The group in which a triangle is shaded, by the index of its mesh and in it.
     pub(crate) fn group(&self, scene: &Scene, triangle: [u32; 2]) -> u32 {
         let baked = self.baked.as_ref().and_then(|(_, baked)| baked.group(scene, triangle));

@@ -76,6 +76,11 @@ pub struct Ewa {
     /// The paper's formulas as meant or as printed; as printed takes every texel. Default:
     /// [`Formulas::Meant`].
     pub formulas: Formulas,
+    /// How finely ellipses are cut, 2 to 64: sixteen times as many of these take a mip level finer,
+    /// and twice as many make `texel_budget`, which is for 12, 2.8 times as large. More is finer and slower: 4 is fast,
+    /// 24 nearly as good as it gets but for `every_texel`, with which these do not count. Default:
+    /// 12.
+    pub lines: u32,
     /// The mip level is chosen so that an ellipse holds at most this many texels, and coarser still
     /// where its texels sample the Gaussian well; 0: always the base level, as in the paper, and
     /// every texel. Default: 256.
@@ -147,11 +152,15 @@ pub const RECONSTRUCTION: f32 = 4.0 / 6.0;
 /// What `max_anisotropy` is by default.
 pub(super) const MAX_ANISOTROPY: f32 = 64.0;
 
+/// What `lines` are by default.
+const LINES: u32 = 12;
+
 const RELIEF: (Derivatives, Formulas) = (Derivatives::Relief, Formulas::Meant);
 const TRILINEAR: Trilinear = Trilinear { derivatives: RELIEF.0, formulas: RELIEF.1 };
 const EWA: Ewa = Ewa {
     derivatives: RELIEF.0,
     formulas: RELIEF.1,
+    lines: LINES,
     texel_budget: 256,
     max_anisotropy: MAX_ANISOTROPY,
     every_texel: false,
@@ -167,7 +176,7 @@ const VISIBLE: Visible = Visible {
     max_stretch: 4.0,
 };
 const HORIZON: Horizon =
-    Horizon { lines: 12, far_field: true, far_field_mib: 32, max_anisotropy: MAX_ANISOTROPY };
+    Horizon { lines: LINES, far_field: true, far_field_mib: 32, max_anisotropy: MAX_ANISOTROPY };
 const RAYS: Rays = Rays { samples: 64 };
 
 impl Default for Trilinear {

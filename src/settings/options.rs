@@ -13,12 +13,12 @@ use crate::error::{Error, Result, within};
 /// ```
 /// use basrelief::Filter;
 ///
-/// // A finer horizon; filters without lines stay what they are.
+/// // A finer horizon and finer ellipses; filters without lines stay what they are.
 /// let finer = Filter::ALL.map(|mut filter| {
 ///     filter.options_mut().lines.into_iter().for_each(|lines| *lines = 24);
 ///     filter
 /// });
-/// assert_eq!(finer.iter().zip(&Filter::ALL).filter(|(a, b)| a != b).count(), 1);
+/// assert_eq!(finer.iter().zip(&Filter::ALL).filter(|(a, b)| a != b).count(), 2);
 /// ```
 #[allow(missing_docs, reason = "the words of each stand in the filters' own structs")]
 #[derive(Debug, Default)]
@@ -58,6 +58,7 @@ impl Filter {
                 Ewa {
                     derivatives,
                     formulas,
+                    lines,
                     texel_budget,
                     max_anisotropy,
                     every_texel,

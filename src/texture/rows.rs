@@ -267,6 +267,7 @@ impl Rows {
 }
 
 /// See [`Rows::row_starts`].
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct RowStarts<'a> {
     rows: &'a Rows,
     row: i32,
@@ -274,7 +275,19 @@ pub(crate) struct RowStarts<'a> {
     pitch: usize,
 }
 
-impl RowStarts<'_> {
+impl<'a> RowStarts<'a> {
+    /// Whose rows they are.
+    #[inline(always)]
+    pub(crate) fn rows(&self) -> &'a Rows {
+        self.rows
+    }
+
+    /// The next row.
+    #[inline(always)]
+    pub(crate) fn row(&self) -> i32 {
+        self.row
+    }
+
     /// Where the next row starts.
     #[inline(always)]
     pub(crate) fn next(&mut self) -> usize {

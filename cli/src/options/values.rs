@@ -45,7 +45,7 @@ pub(crate) fn number(text: &str) -> Result<f32, String> {
     check::number(text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?)
 }
 
-/// How finely the horizon cuts footprints: a named point or a number.
+/// How finely the horizon and EWA cut footprints: a named point or a number.
 pub(crate) fn lines(text: &str) -> Result<u32, String> {
     match text {
         "fast" => Ok(4),

@@ -14,6 +14,7 @@ pub use whole::mean;
 use super::batch::{Batch, Filtered, Work, each_covered};
 use crate::footprint::{Footprints, levels};
 use crate::settings::{Ewa, Formulas};
+use crate::simd::{LineLanes, PixelLanes, sums_of_eight};
 use crate::texture::Surface;
 
 /// Pairs whose axes are found before their texels are read: a pair's steps wait for each other,
@@ -59,6 +60,8 @@ fn along_axes<const HAS_NORMALS: bool>(
     out: &mut [Filtered],
 ) -> u64 {
     let mut num_read = 0;
+    // Those of lanes that are not covered are left over from others, and not looked at.
+    let mut sums = [[[LineLanes::ZERO; 4]; 8]; 2];
     for (pixels, out) in pixels.chunks(AXES_AT_ONCE).zip(out.chunks_mut(AXES_AT_ONCE)) {
         let mut axes = [None; AXES_AT_ONCE];
         for (axes, pixels) in axes.iter_mut().zip(pixels) {
@@ -66,11 +69,28 @@ fn along_axes<const HAS_NORMALS: bool>(
         }
         for ((axes, pixels), out) in axes.iter().flatten().zip(pixels).zip(out) {
             for lane in pixels.covered() {
-                let (mean, num) = axes.mean::<HAS_NORMALS>(surface, lane);
+                let (of_pixel, num) = axes.sums::<HAS_NORMALS>(lane);
+                sums[0][lane] = of_pixel.colors();
+                if HAS_NORMALS {
+                    sums[1][lane] = of_pixel.normals();
+                }
                 num_read += num;
-                out.set(lane, &mean);
+            }
+            // A sum over lanes takes many steps in turn: eight pixels take theirs at once.
+            out.color = means(&sums[0]);
+            if HAS_NORMALS {
+                out.normal = means(&sums[1]);
             }
         }
     }
     num_read
+}
+
+/// The means of eight pixels, by the sums of their weights and of what is weighed.
+#[inline(always)]
+fn means(pixels: &[[LineLanes; 4]; 8]) -> [PixelLanes; 3] {
+    let total = |value: usize| sums_of_eight(pixels.each_ref().map(|sums| sums[value]));
+    // Of a covered pixel the column next to its middle weighs far more than 1.
+    let share = PixelLanes::ONE / total(0).fast_max(PixelLanes::ONE);
+    [total(1) * share, total(2) * share, total(3) * share]
 }
