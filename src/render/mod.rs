@@ -10,6 +10,7 @@
 mod baked;
 mod exact;
 mod ground;
+mod open_sky;
 mod prepared;
 mod reflections;
 mod shade;
