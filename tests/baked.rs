@@ -133,24 +133,39 @@ fn baked_light_is_the_truths() {
     }
 }
 
+/// Adds a plate over the floor, edge on to the eye, so that it hides little of the picture.
+fn add_plate(scene: &mut Scene) {
+    let corners = [[-1.5, 3.5], [1.5, 3.5], [1.5, 1.5], [-1.5, 1.5]];
+    let plate = corners.map(|[x, z]| Vec3::new(x, 1.6, z)).to_vec();
+    let faces = vec![[0, 1, 2], [0, 2, 3]];
+    scene.materials.push(Material::default());
+    scene.meshes.push(Mesh { material: 1, ..Mesh::new(plate, vec![], vec![], faces) });
+}
+
 #[test]
 fn meshes_throw_the_truths_shadows_on_flat_pieces() {
     let lights = [
         sun(Vec3::new(0.3, 1.0, -0.4), Vec3::splat(0.6)),
         Light::Sun { to_light: Vec3::new(-0.5, 0.8, 0.0), intensity: Vec3::X, angular_size: 6.0 },
     ];
-    // No sky: of that the plate hides a part in the truth alone.
     let mut scene = floor(cobbles(128, 4), &lights, Vec3::ZERO);
     let lit = draw(&scene, Filter::default());
-    // A plate over the floor, edge on to the eye, so that it hides little of the picture.
-    let corners = [[-1.5, 3.5], [1.5, 3.5], [1.5, 1.5], [-1.5, 1.5]];
-    let plate = corners.map(|[x, z]| Vec3::new(x, 1.6, z)).to_vec();
-    let faces = vec![[0, 1, 2], [0, 2, 3]];
-    scene.materials.push(Material::default());
-    scene.meshes.push(Mesh { material: 1, ..Mesh::new(plate, vec![], vec![], faces) });
+    add_plate(&mut scene);
     let shaded = draw(&scene, Filter::default());
     let truth = draw(&scene, Filter::Truth(Rays { samples: 64 }));
     assert!(decibels(&lit, &truth) < 25.0, "the plate shades a part of the picture");
     let found = decibels(&shaded, &truth);
     assert!(found > 33.0, "{found} dB");
+}
+
+#[test]
+fn meshes_hide_the_truths_part_of_the_sky_from_flat_pieces() {
+    let mut scene = floor(cobbles(128, 4), &[], Vec3::splat(0.8));
+    let open = draw(&scene, Filter::default());
+    add_plate(&mut scene);
+    let shaded = draw(&scene, Filter::default());
+    let truth = draw(&scene, Filter::Truth(Rays { samples: 64 }));
+    let [without, found] = [&open, &shaded].map(|frame| decibels(frame, &truth));
+    assert!(without < 28.0, "the plate hides a part of the sky: {without} dB without it");
+    assert!(found > 36.0, "{found} dB");
 }

@@ -6,7 +6,9 @@
 //! a floor, share one. Curved meshes are lit place by place.
 
 use super::ground::LitPiece;
+use super::open_sky::{Facing, OpenSky, Plane};
 use crate::filter::Prepared;
+use crate::light::exact::Occluders;
 use crate::light::{TextureFrame, baked};
 use crate::scene::{Light, Material, Mesh, Scene, Sky};
 use glam::Vec3;
@@ -51,6 +53,8 @@ struct Piece {
     sides: [Option<Side>; 2],
     /// How far its corners lie along the normal, the least and the greatest.
     range: [f32; 2],
+    /// Where its triangles lie.
+    planes: Vec<Plane>,
 }
 
 /// A lit side of a piece.
@@ -60,6 +64,7 @@ struct Side {
     lit: Prepared,
     /// See [`LitPiece::apart`].
     apart: Vec<Prepared>,
+    open_sky: Option<OpenSky>,
 }
 
 impl Baked {
@@ -92,10 +97,12 @@ impl Baked {
                 *left = left.checked_sub(num_texels)?;
                 let range = [f32::INFINITY, f32::NEG_INFINITY];
                 let material = mesh.material;
-                self.pieces.push(Piece { material, frame, sides: [None, None], range });
+                let (sides, planes) = Default::default();
+                self.pieces.push(Piece { material, frame, sides, range, planes });
                 self.pieces.len() - 1
             };
-            let Piece { frame, range: [least, most], .. } = &mut self.pieces[piece];
+            let Piece { frame, range: [least, most], planes, .. } = &mut self.pieces[piece];
+            Plane::add(planes, frame.normal, triangle.map(|i| mesh.positions[i as usize]));
             for corner in triangle {
                 let along = frame.normal.dot(mesh.positions[*corner as usize]);
                 (*least, *most) = (least.min(along), most.max(along));
@@ -117,6 +124,7 @@ impl Baked {
     pub(crate) fn light<'a>(
         &mut self,
         scene: &Scene,
+        occluders: impl Fn() -> &'a Occluders,
         unlit: impl Fn(usize) -> Option<&'a Prepared>,
     ) {
         let mut is_seen = vec![[false; 2]; self.pieces.len()];
@@ -133,7 +141,7 @@ impl Baked {
                 if !is_seen || piece.sides[side].is_some() {
                     continue;
                 }
-                piece.sides[side] = piece.light(side, scene, unlit);
+                piece.sides[side] = piece.light(side, (scene, &occluders), unlit);
             }
         }
     }
@@ -168,8 +176,9 @@ impl Baked {
 
     /// The lit surface of a [group](Self::group).
     pub(crate) fn of_group(&self, group: usize) -> Option<(&Prepared, LitPiece<'_>)> {
-        let Side { normal, lit, apart } = self.pieces[group / 2].sides[group % 2].as_ref()?;
-        Some((lit, LitPiece { normal: *normal, apart }))
+        let Side { normal, lit, apart, open_sky } =
+            self.pieces[group / 2].sides[group % 2].as_ref()?;
+        Some((lit, LitPiece { normal: *normal, apart, open_sky: open_sky.as_ref() }))
     }
 
     /// A triangle's piece, and which side the camera sees: 0 for the front.
@@ -188,21 +197,41 @@ impl Baked {
 
 impl Piece {
     /// Its side, 0 the front, in the scene's light.
-    fn light(&self, side: usize, scene: &Scene, unlit: &Prepared) -> Option<Side> {
+    fn light<'a>(
+        &self,
+        side: usize,
+        (scene, occluders): (&Scene, &impl Fn() -> &'a Occluders),
+        unlit: &Prepared,
+    ) -> Option<Side> {
         let normal = if side == 0 { self.frame.normal } else { -self.frame.normal };
         let frame = TextureFrame { normal, ..self.frame };
         let lit = |lights: &[Light], sky: &Sky| {
             let beams = frame.beams(lights, sky)?;
             Some(unlit.recolored(baked(unlit.surface(), &beams)))
         };
-        let mut apart = Vec::new();
+        let (mut apart, mut open_sky) = (Vec::new(), None);
         if self.may_be_shaded(side, scene) {
             apart.push(lit(&[], &scene.sky)?);
             for light in &scene.lights {
                 apart.push(lit(std::slice::from_ref(light), &Sky::default())?);
             }
+            open_sky = self.open_sky(side, (scene, occluders()), unlit);
         }
-        Some(Side { normal, lit: lit(&scene.lights, &scene.sky)?, apart })
+        Some(Side { normal, lit: lit(&scene.lights, &scene.sky)?, apart, open_sky })
+    }
+
+    /// What other meshes leave of the sky to that side.
+    fn open_sky(
+        &self,
+        side: usize,
+        with: (&Scene, &Occluders),
+        unlit: &Prepared,
+    ) -> Option<OpenSky> {
+        let TextureFrame { tangents: [u, v], normal } = self.frame;
+        let down = u.cross(v).length().sqrt() * unlit.surface().relief_depth();
+        let is_turned = side == 1;
+        let normal = if is_turned { -normal } else { normal };
+        OpenSky::new(with, &Facing { normal, is_turned, down }, &self.planes)
     }
 
     /// Whether a corner of any mesh lies before a part of that side.

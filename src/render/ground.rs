@@ -1,5 +1,6 @@
 //! What pixels lie on: a material with its texture, and the polygon at places of the screen.
 
+use super::open_sky::OpenSky;
 use crate::filter::Prepared;
 use crate::footprint::{Footprint, Footprints};
 use crate::light::SurfacePoint;
@@ -41,6 +42,8 @@ pub(crate) struct LitPiece<'a> {
     pub(crate) normal: Vec3,
     /// Under the sky alone, and under each sun alone; nothing where no mesh can hide a sun from it.
     pub(crate) apart: &'a [Prepared],
+    /// What meshes leave of the sky, where they hide any of it.
+    pub(crate) open_sky: Option<&'a OpenSky>,
 }
 
 impl Ground<'_> {

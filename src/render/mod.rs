@@ -11,6 +11,7 @@ mod baked;
 mod curved;
 mod exact;
 mod ground;
+mod open_sky;
 mod prepared;
 mod reflections;
 mod shade;

@@ -95,7 +95,8 @@ impl PreparedScene {
         if is_lit && !is_exact && !has_points {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
-            baked.light(scene, |material| self.of_material(material, settings.parallax));
+            let unlit = |material| self.of_material(material, settings.parallax);
+            baked.light(scene, || self.occluders(scene), unlit);
             if baked.has_shadows() {
                 self.occluders(scene);
             }

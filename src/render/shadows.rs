@@ -45,7 +45,8 @@ struct Hidden {
 }
 
 impl Shader<'_> {
-    /// Draws anew what meshes shade of a block: the sky's part, and of each sun's what it reaches.
+    /// Draws anew what meshes shade of a block: of the sky's part, and of each sun's, what gets
+    /// there.
     pub(super) fn shadow(
         &self,
         ground: &Ground,
@@ -56,15 +57,25 @@ impl Shader<'_> {
     ) {
         let [sky, suns @ ..] = lit.apart else { return };
         let occluders = self.prepared.occluders(self.scene);
-        let Some(hidden) = hidden_suns(self.scene, occluders, (ground, lit), block) else { return };
+        let hidden = hidden_suns(self.scene, occluders, (ground, lit), block);
+        let open_sky = lit.open_sky.and_then(|sky| sky.of_block(block));
+        if hidden.is_none() && open_sky.is_none() {
+            return;
+        }
         let mut part = Vec::with_capacity(colors.len());
         self.textured(&Ground { prepared: sky, ..*ground }, block, scratch, &mut part);
+        if let Some(shares) = open_sky {
+            for (part, share) in part.iter_mut().zip(shares) {
+                (0..3).for_each(|c| part[c] *= share[c]);
+            }
+        }
         colors.copy_from_slice(&part);
-        for (sun, hidden) in suns.iter().zip(hidden) {
+        for (i, sun) in suns.iter().enumerate() {
             part.clear();
             self.textured(&Ground { prepared: sun, ..*ground }, block, scratch, &mut part);
-            for ((color, part), hidden) in colors.iter_mut().zip(&part).zip(hidden) {
-                (0..3).for_each(|c| color[c] += part[c] * (PixelLanes::ONE - hidden));
+            for (p, (color, part)) in colors.iter_mut().zip(&part).enumerate() {
+                let seen = hidden.as_ref().map_or(PixelLanes::ONE, |h| PixelLanes::ONE - h[i][p]);
+                (0..3).for_each(|c| color[c] += part[c] * seen);
             }
         }
     }
