@@ -2,17 +2,20 @@
 
 use crate::commands::measure;
 use crate::options::frames::Sequence;
+use crate::options::layers::LayerFile;
 use crate::options::render::RenderOptions;
 use crate::options::scene_file;
 use crate::options::threads::thread_pool;
 use crate::output;
+use crate::pictures::layers;
 use crate::pictures::picture::{self, Way};
 use crate::progress::Progress;
 use crate::refusal::Refusal;
 use crate::stats::Report;
 use crate::timing::{Took, milliseconds};
-use basrelief::{Lighting, Renderer, Settings};
-use std::path::PathBuf;
+use basrelief::frame::Format;
+use basrelief::{Filter, Lighting, Renderer, Settings};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -23,9 +26,17 @@ pub(crate) fn run(mut options: RenderOptions) -> Result<ExitCode, Refusal> {
     if let Some(view) = options.view.view {
         return measure::run(&options, view);
     }
-    let settings = options.settings.settings(options.scene.has_lights())?;
-    let sequence = options.frames.sequence(options.output.as_deref())?;
-    let way = check(&options, &settings, &sequence)?;
+    let mut settings = options.settings.settings(options.scene.has_lights())?;
+    let layers = options.layers.files()?;
+    let draws_picture = options.output.is_some() || layers.is_empty();
+    if !draws_picture {
+        // Layers ask for no filter: none makes tables.
+        settings.filter = Filter::Nearest;
+    }
+    // Without a picture, the first file of layers says whether a frame is there.
+    let first = if draws_picture { None } else { layers.first().map(|file| file.path.as_path()) };
+    let sequence = options.frames.sequence(options.output.as_deref().or(first))?;
+    let way = check(&options, &settings, &sequence, &layers)?;
     let pool = thread_pool(options.threads)?;
     let progress = Progress::new(options.quiet);
     sequence.remark.iter().for_each(|remark| progress.say(remark));
@@ -38,7 +49,16 @@ pub(crate) fn run(mut options: RenderOptions) -> Result<ExitCode, Refusal> {
     if num_skipped > 0 {
         progress.say(&format!("{num_skipped} of {num_asked} pictures are there already"));
     }
-    let job = Job { options: &options, settings, sequence, pictures, way, progress };
+    let job = Job {
+        options: &options,
+        settings,
+        sequence,
+        pictures,
+        layers,
+        draws_picture,
+        way,
+        progress,
+    };
     if !job.pictures.is_empty() || options.save_scene.is_some() {
         pool.install(|| job.run())?;
     }
@@ -50,8 +70,10 @@ fn check(
     options: &RenderOptions,
     settings: &Settings,
     sequence: &Sequence,
+    layers: &[LayerFile],
 ) -> Result<Way, Refusal> {
     let name = sequence.output();
+    check_layers(options, sequence, layers)?;
     if sequence.is_numbered() && options.repeat.is_some() {
         return Err("--repeat: measures one picture, not many frames".into());
     }
@@ -60,7 +82,11 @@ fn check(
     {
         return Err("--json: stdout is taken by --output or --stats".into());
     }
-    let others = [("--stats", &options.stats), ("--save-scene", &options.save_scene)];
+    let others = [
+        ("--stats", &options.stats),
+        ("--save-scene", &options.save_scene),
+        ("--layer-names", &options.layers.layer_names),
+    ];
     for (option, path) in
         others.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?)))
     {
@@ -69,7 +95,52 @@ fn check(
         }
         output::check(path)?;
     }
-    Way::of(settings, output::image_format(name)?, options.repeat.is_some())
+    if !layers.is_empty() && options.output.is_none() {
+        return Ok(Way::Whole(Format::Exr));
+    }
+    let way = Way::of(settings, output::image_format(name)?, options.repeat.is_some())?;
+    if way == Way::Bands && !layers.is_empty() {
+        return Err("--layer: a picture this large is drawn in bands, which have no layers; \
+                    --region draws a part, and without --output there are layers alone"
+            .into());
+    }
+    Ok(way)
+}
+
+/// Whether the files of layers can be written beside all others.
+fn check_layers(
+    options: &RenderOptions,
+    sequence: &Sequence,
+    layers: &[LayerFile],
+) -> Result<(), Refusal> {
+    if options.output.is_none() && !layers.is_empty() {
+        let measured = [
+            ("--repeat", options.repeat.is_some()),
+            ("--stats", options.stats.is_some()),
+            ("--json", options.json),
+        ];
+        if let Some((option, _)) = measured.iter().find(|(_, is_given)| *is_given) {
+            return Err(format!("{option}: needs a picture, from --output").into());
+        }
+    }
+    let others =
+        [&options.output, &options.stats, &options.save_scene, &options.layers.layer_names];
+    for file in layers {
+        let path = &file.path;
+        if others.into_iter().any(|other| other.as_ref() == Some(path)) {
+            return Err(format!("--layer: {} is another file already", path.display()).into());
+        }
+        let is_pattern = path.file_name().is_some_and(|name| name.to_string_lossy().contains('#'));
+        if sequence.is_numbered() && !is_pattern {
+            return Err(format!(
+                "--layer {}: many frames need #### for the frame's number",
+                path.display()
+            )
+            .into());
+        }
+        output::check(path)?;
+    }
+    Ok(())
 }
 
 struct Job<'a> {
@@ -78,6 +149,9 @@ struct Job<'a> {
     sequence: Sequence,
     /// Numbers and files of what is to be drawn.
     pictures: Vec<(u32, PathBuf)>,
+    layers: Vec<LayerFile>,
+    /// Or layers alone.
+    draws_picture: bool,
     way: Way,
     progress: Progress,
 }
@@ -117,7 +191,9 @@ impl Job<'_> {
     /// The renderer of the scene, with its tables; the scene file is written if one is asked for.
     fn prepare(&self) -> Result<Renderer, Refusal> {
         let Self { options, settings, progress, .. } = self;
-        let loaded = options.scene.load(settings, settings.lighting == Lighting::Lit, progress)?;
+        let has_normals = settings.lighting == Lighting::Lit
+            || self.layers.iter().any(LayerFile::asks_for_normals);
+        let loaded = options.scene.load(settings, has_normals, progress)?;
         loaded.choices.iter().for_each(|choice| progress.say(choice));
         loaded.warnings.iter().for_each(|warning| progress.warn(warning));
         let camera = loaded.scene.camera;
@@ -130,6 +206,9 @@ impl Job<'_> {
         }
         progress.stage("building tables");
         let renderer = Renderer::new(loaded.scene, picture::first_settings(settings, self.way))?;
+        if let Some(path) = &options.layers.layer_names {
+            output::write(path, &layers::names(renderer.scene())?)?;
+        }
         if let Some(path) = &options.save_scene {
             output::write(
                 path,
@@ -152,6 +231,10 @@ impl Job<'_> {
                 true => format!("drawing frame {number} ({} of {})", i + 1, self.pictures.len()),
                 false => "drawing".into(),
             });
+            self.draw_layers(renderer, *number)?;
+            if !self.draws_picture {
+                continue;
+            }
             let took = picture::draw(
                 renderer,
                 &self.settings,
@@ -166,5 +249,19 @@ impl Job<'_> {
             all.extend(took);
         }
         Ok(all)
+    }
+
+    /// Before the picture, whose file then says that all of a frame is there.
+    fn draw_layers(&self, renderer: &mut Renderer, number: u32) -> Result<(), Refusal> {
+        if self.layers.is_empty() {
+            return Ok(());
+        }
+        let path_of = |pattern: &Path| self.sequence.file_like(pattern, number);
+        layers::draw(renderer, &self.layers, &path_of)?;
+        for file in &self.layers {
+            let path = path_of(&file.path);
+            self.progress.say(&format!("wrote layers to {}", path.display()));
+        }
+        Ok(())
     }
 }

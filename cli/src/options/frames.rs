@@ -144,10 +144,15 @@ impl Sequence {
     }
 
     fn file(&self, number: u32) -> PathBuf {
+        self.file_like(&self.output, number)
+    }
+
+    /// The file of a frame by a pattern of names.
+    pub(crate) fn file_like(&self, pattern: &Path, number: u32) -> PathBuf {
         if self.is_numbered() {
-            self.output.with_file_name(numbered(&file_name(&self.output), number))
+            pattern.with_file_name(numbered(&file_name(pattern), number))
         } else {
-            self.output.clone()
+            pattern.into()
         }
     }
 

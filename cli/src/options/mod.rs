@@ -9,6 +9,7 @@ pub(crate) mod filter;
 pub(crate) mod frames;
 pub(crate) mod inspect;
 pub(crate) mod join;
+pub(crate) mod layers;
 pub(crate) mod render;
 pub(crate) mod scene;
 pub(crate) mod scene_file;

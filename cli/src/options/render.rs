@@ -2,6 +2,7 @@
 
 use crate::options::choices::{Choice, ON_OFF, one_of};
 use crate::options::frames::FramesOptions;
+use crate::options::layers::LayerOptions;
 use crate::options::scene::SceneOptions;
 use crate::options::settings::SettingsOptions;
 use basrelief::inspect::View;
@@ -16,6 +17,9 @@ pub(crate) struct RenderOptions {
     pub(crate) settings: SettingsOptions,
     #[command(flatten)]
     pub(crate) view: ViewOptions,
+
+    #[command(flatten)]
+    pub(crate) layers: LayerOptions,
 
     #[command(flatten)]
     pub(crate) frames: FramesOptions,
@@ -65,7 +69,7 @@ pub(crate) const VIEWS: &[Choice<View>] = &[
 #[command(next_help_heading = "Output")]
 pub(crate) struct ViewOptions {
     /// Show numbers of every pixel as colours, in place of the picture
-    #[arg(long, value_name = "WHAT", value_parser = one_of(VIEWS))]
+    #[arg(long, value_name = "WHAT", value_parser = one_of(VIEWS), conflicts_with = "files")]
     pub(crate) view: Option<View>,
     /// Whether a legend is added below the picture of --view
     #[arg(long, value_name = "on|off", action = clap::ArgAction::Set, hide_possible_values = true, default_value = "on", value_parser = one_of(ON_OFF), requires = "view")]

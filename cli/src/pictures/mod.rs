@@ -2,5 +2,6 @@
 
 pub(crate) mod draw;
 pub(crate) mod inspection;
+pub(crate) mod layers;
 pub(crate) mod measured;
 pub(crate) mod picture;

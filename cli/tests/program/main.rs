@@ -6,6 +6,7 @@ mod command_line;
 mod folder;
 mod frames;
 mod golden;
+mod layers;
 mod scene_file;
 mod see;
 mod study;
