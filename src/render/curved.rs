@@ -23,7 +23,7 @@ impl Shader<'_> {
         scratch: &mut ShadeScratch,
         colors: &mut Vec<[PixelLanes; 3]>,
     ) {
-        let hidden = self.hidden_on_curved(ground, block);
+        let (hidden, shown) = self.hidden_on_curved(ground, block);
         // Find the suns that reach all of the block, and those that reach a part.
         let (mut whole, mut parts) = (all, Vec::new());
         for (i, hidden) in hidden.iter().enumerate() {
@@ -50,6 +50,9 @@ impl Shader<'_> {
             for ((color, part), hidden) in colors[start..].iter_mut().zip(&part).zip(hidden) {
                 (0..3).for_each(|c| color[c] += part[c] * (PixelLanes::ONE - *hidden));
             }
+        }
+        for (color, shown) in colors[start..].iter_mut().zip(shown) {
+            color.iter_mut().for_each(|channel| *channel *= shown);
         }
     }
 }

@@ -30,6 +30,9 @@ const RAYS: usize = 16;
 /// the pixel.
 const FIRST: [usize; 4] = [2, 4, 9, 11];
 
+/// Least cosine to a sun with which the plane of a few pixels says where their polygons lie.
+const LEAST_FACING: f32 = 0.1;
+
 /// Three coordinates of eight pixels.
 type Vectors = [PixelLanes; 3];
 
@@ -124,13 +127,13 @@ fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<
 }
 
 impl Shader<'_> {
-    /// The parts of each sun that are not seen from the pixels of a block of a curved surface: sun
-    /// by sun, pair by pair.
+    /// The parts of each sun that are not seen from the pixels of a block of a curved surface, sun by
+    /// sun and pair by pair, and the part of each pixel that lies on the side that is seen.
     pub(super) fn hidden_on_curved(
         &self,
         ground: &Ground,
         block: &QuadBlock,
-    ) -> Vec<Vec<PixelLanes>> {
+    ) -> (Vec<Vec<PixelLanes>>, Vec<PixelLanes>) {
         let occluders = self.prepared.occluders(self.scene);
         let rays = block.pairs().filter_map(|pair| ViewRays::new(self.scene, ground, &pair));
         let rays: Vec<_> = rays.collect();
@@ -142,7 +145,9 @@ impl Shader<'_> {
                 // What turns away from a sun is dark without any shadow.
                 let facing = along(&rays.normal, up).to_array();
                 let is_lit = set_bits(rays.covered).any(|lane| facing[lane] > 0.0);
-                if is_lit && !ceiling.is_clear(&rays.spots(ceiling.axes())) {
+                // The plane of what is seen edge on from a sun says nothing of where it lies.
+                let is_steep = set_bits(rays.covered).any(|lane| facing[lane] < LEAST_FACING);
+                if is_lit && (is_steep || !ceiling.is_clear(&rays.spots(ceiling.axes()))) {
                     let pair = block.pair(i);
                     if let Some(lit) = pair.lit() {
                         open.push((i, places(&pair, ground, &lit, &rays.normal), rays.normal));
@@ -152,7 +157,9 @@ impl Shader<'_> {
             hide(occluders, ceiling, &open, &mut hidden);
             hidden
         };
-        self.prepared.ceilings(self.scene).iter().map(of_sun).collect()
+        let eye = self.scene.camera.eye;
+        let hidden = self.prepared.ceilings(self.scene).iter().map(of_sun).collect();
+        (hidden, rays.iter().map(|rays| rays.shown(eye)).collect())
     }
 }
 
@@ -185,8 +192,9 @@ struct ViewRays {
     /// Where they pass the polygon, and from there down.
     polygon: Vectors,
     way: Vectors,
-    /// Unit normals on the eye's side.
+    /// Unit normals on the eye's side, and normals as the mesh has them.
     normal: Vectors,
+    smooth: Vectors,
     /// See [`Places`].
     steps: [Vectors; 2],
     reach: PixelLanes,
@@ -197,7 +205,7 @@ impl ViewRays {
     fn new(scene: &Scene, ground: &Ground, pair: &QuadPair) -> Option<Self> {
         let LitLanes { position, normal, tangent_u, tangent_v } = pair.lit()?;
         let frame = FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
-        let normal = frame.axes[2];
+        let (normal, smooth) = (frame.axes[2], normal);
         let relief_depth = ground.prepared.surface().relief_depth();
         let moved = displacement(&pair.view(), relief_depth);
         let across = cross(&tangent_u, &tangent_v);
@@ -206,26 +214,47 @@ impl ViewRays {
             [0, 1, 2].map(|i| tangent_u[i] * moved[0] + tangent_v[i] * moved[1] - down * normal[i]);
         let covered = pair.covered_bits();
         let steps = steps(&position);
-        Some(Self { polygon: position, way, normal, steps, reach: down * 2.0, covered })
+        Some(Self { polygon: position, way, normal, smooth, steps, reach: down * 2.0, covered })
     }
 
-    /// All of their points by the axes across a light and to it. Own triangles lie about as high as
-    /// where the rays pass them: within the reach above is what may only touch the relief.
+    /// All of their points by the axes across a light and to it.
     fn spots(&self, axes: [Vec3; 3]) -> Spots {
         let range = |from: PixelLanes, to: PixelLanes| {
             let [least, most] = [from.fast_min(to), from.fast_max(to)].map(PixelLanes::to_array);
             set_bits(self.covered)
                 .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
         };
-        let [x, y, up] = axes.map(|axis| {
+        let ranges = axes.map(|axis| {
             let (from, way) = (along(&self.polygon, axis), along(&self.way, axis));
             let half =
                 (along(&self.steps[0], axis).abs() + along(&self.steps[1], axis).abs()) * 0.5;
-            let ([a, b], [c, d]) = (range(from - half, from + half), range(from + way, from));
-            ([a.min(c), b.max(d)], b)
+            let [a, b] = range(from.fast_min(from + way) - half, from.fast_max(from + way) + half);
+            [a, b]
         });
-        let reach = range(self.reach, self.reach)[0];
-        Spots { across: [x.0, y.0], lowest: up.0[0], own: up.1 + reach }
+        let mean = |of: &Vectors| {
+            let sum = set_bits(self.covered).fold(Vec3::ZERO, |sum, lane| sum + of_lane(of, lane));
+            let mean = sum / (self.covered.count_ones().max(1) as f32);
+            Vec3::from(axes.map(|axis| axis.dot(mean)))
+        };
+        let [x, y, up] = ranges;
+        let polygon = [mean(&self.polygon), mean(&self.normal)];
+        Spots { across: [x, y], lowest: up[0], polygon, reach: range(self.reach, self.reach)[0] }
+    }
+
+    /// How much of each pixel lies on the side that its middle shows: at an outline the normals of a
+    /// smooth mesh turn away within a pixel, and what they turn to is the inside.
+    fn shown(&self, eye: Vec3) -> PixelLanes {
+        let to_eye = [0, 1, 2].map(|i| PixelLanes::splat(eye[i]) - self.polygon[i]);
+        let facing = dot(&to_eye, &self.smooth).to_array();
+        // A part of the kernel's area next to a line through its middle, a pixel wide.
+        const DENSITY: f32 = 0.88;
+        PixelLanes::new(std::array::from_fn(|lane| {
+            let quad = lane / 4 * 4;
+            let [dx, dy] = [1, 2].map(|i| facing[quad + i] - facing[quad]);
+            let growth = (dx * dx + dy * dy).sqrt();
+            let pixels = if growth > 0.0 { facing[lane].abs() / growth } else { 1.0 };
+            (0.5 + DENSITY * pixels).min(1.0)
+        }))
     }
 }
 

@@ -29,9 +29,15 @@ pub struct Spots {
     pub across: [[f32; 2]; 2],
     /// How far at least they lie towards the sun.
     pub lowest: f32,
-    /// Triangles that light passes from behind hide nothing if they lie no higher.
-    pub own: f32,
+    /// A point of their polygon, and its unit normal, which faces the sun: along both axes across
+    /// the light, and to it.
+    pub polygon: [Vec3; 2],
+    /// A triangle that light passes from behind hides nothing that is nearer to its plane.
+    pub reach: f32,
 }
+
+/// Most cells a side that are looked at.
+const MOST_CELLS: usize = 8;
 
 impl Ceiling {
     /// Of triangles over an area that is given by its corners.
@@ -118,16 +124,24 @@ impl Ceiling {
         let Some(cells) = self.cells(&spots.across.map(|[a, b]| [a - more, b + more])) else {
             return false;
         };
-        // Look at four cells of the level where that is enough.
         let most = cells.iter().fold(0, |most, [from, to]| most.max(to - from));
-        let level = (usize::BITS - most.leading_zeros()) as usize;
+        let level = (usize::BITS - (most / MOST_CELLS).leading_zeros()) as usize;
         let level = level.min(self.levels.len() - 1);
         let side = SIDE >> level;
+        let size = (1_usize << level) as f32 / self.scale;
         let [columns, rows] = cells.map(|range| range.map(|i| i >> level));
+        // Own triangles lie about as high as the polygon's plane does in the middle of a cell.
+        let [point, normal] = spots.polygon;
+        let inverse = 1.0 / normal.z;
+        let [dx, dy] = [-normal.x * inverse, -normal.y * inverse];
+        let at = |i: usize, axis: usize| (i as f32 + 0.5) * size + self.origin[axis] - point[axis];
         (rows[0]..=rows[1]).all(|y| {
-            self.levels[level][y * side..][columns[0]..=columns[1]]
-                .iter()
-                .all(|[behind, front]| *behind <= spots.own && *front <= spots.lowest)
+            let row = &self.levels[level][y * side..][..side];
+            let plane = point.z + at(y, 1) * dy + spots.reach * inverse;
+            (columns[0]..=columns[1]).all(|x| {
+                let [behind, front] = row[x];
+                behind <= plane + at(x, 0) * dx && front <= spots.lowest
+            })
         })
     }
 }
