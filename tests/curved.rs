@@ -185,7 +185,8 @@ fn horizons_say_what_sweeps_along_the_light_say() {
         let length = ((x * x + y * y) as f32).sqrt();
         for height in [0.15_f32, 0.3, 0.5] {
             let reach = -surface.relief_depth() * (1.0 - height) / height / length;
-            let parts = LitParts::new(surface.base(), [x * reach, y * reach], surface.relief_depth());
+            let parts =
+                LitParts::new(surface.base(), [x * reach, y * reach], surface.relief_depth());
             let mut sum = 0.0;
             for row in 0..64 {
                 let mut lit = Vec::new();

@@ -87,6 +87,7 @@ fn filter() -> impl Strategy<Value = Filter> {
             Filter::Ewa(_) => Filter::Ewa(Ewa {
                 derivatives,
                 formulas,
+                lines,
                 texel_budget,
                 max_anisotropy,
                 every_texel,
