@@ -159,8 +159,8 @@ impl<'a> LongAxes<'a> {
         self.level.as_array()[lane] as usize
     }
 
-    /// The sums over a pixel's texels, and how many texels were read. Only surfaces that have normals
-    /// may be asked for them.
+    /// The sums over a pixel's texels, and how many texels were read. Only surfaces that have
+    /// normals may be asked for them.
     #[inline(always)]
     pub(super) fn sums<const HAS_NORMALS: bool>(
         &self,
