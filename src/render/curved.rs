@@ -95,10 +95,10 @@ impl CurvedLights {
             let frame =
                 FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
             all.slants.extend(discs.iter().map(|(disc, _)| frame.slant(disc.to_middle)));
-            all.frames.push(frame);
             if swept.has_sky {
-                all.skies.push(skies.of_pair(scene, &pair));
+                all.skies.push(skies.of_pair(scene, &pair, &frame));
             }
+            all.frames.push(frame);
         }
         all
     }

@@ -15,8 +15,8 @@
 
 use super::ground::{Ground, LitPiece};
 use super::shade::{ShadeScratch, Shader};
-use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
-use crate::light::{Disc, FrameLanes};
+use crate::light::Disc;
+use crate::light::exact::{Occluders, Receiver};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
 use crate::relief::{displacement, march};
 use crate::scene::{Light, Scene};
@@ -30,14 +30,11 @@ const RAYS: usize = 16;
 /// the pixel.
 const FIRST: [usize; 4] = [2, 4, 9, 11];
 
-/// Least cosine to a sun with which the plane of a few pixels says where their polygons lie.
-const LEAST_FACING: f32 = 0.1;
-
 /// Three coordinates of eight pixels.
-type Vectors = [PixelLanes; 3];
+pub(super) type Vectors = [PixelLanes; 3];
 
 /// A sun, and the triangles that may hide it from a block.
-struct Hidden {
+pub(super) struct Hidden {
     /// To each of [`RAYS`] points of its disc, unit directions.
     directions: Vec<Vec3>,
     /// From the block's middle.
@@ -126,159 +123,27 @@ fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<
     suns.iter().any(|sun| !sun.triangles.is_empty()).then_some(suns)
 }
 
-impl Shader<'_> {
-    /// The parts of each sun that are not seen from the pixels of a block of a curved surface, sun by
-    /// sun and pair by pair, and the part of each pixel that lies on the side that is seen.
-    pub(super) fn hidden_on_curved(
-        &self,
-        ground: &Ground,
-        block: &QuadBlock,
-    ) -> (Vec<Vec<PixelLanes>>, Vec<PixelLanes>) {
-        let occluders = self.prepared.occluders(self.scene);
-        let rays = block.pairs().filter_map(|pair| ViewRays::new(self.scene, ground, &pair));
-        let rays: Vec<_> = rays.collect();
-        let of_sun = |ceiling: &Ceiling| {
-            let mut hidden = vec![PixelLanes::ZERO; rays.len()];
-            let up = ceiling.axes()[2];
-            let mut open = Vec::new();
-            for (i, rays) in rays.iter().enumerate() {
-                // What turns away from a sun is dark without any shadow.
-                let facing = along(&rays.normal, up).to_array();
-                let is_lit = set_bits(rays.covered).any(|lane| facing[lane] > 0.0);
-                // The plane of what is seen edge on from a sun says nothing of where it lies.
-                let is_steep = set_bits(rays.covered).any(|lane| facing[lane] < LEAST_FACING);
-                if is_lit && (is_steep || !ceiling.is_clear(&rays.spots(ceiling.axes()))) {
-                    let pair = block.pair(i);
-                    if let Some(lit) = pair.lit() {
-                        open.push((i, places(&pair, ground, &lit, &rays.normal), rays.normal));
-                    }
-                }
-            }
-            hide(occluders, ceiling, &open, &mut hidden);
-            hidden
-        };
-        let eye = self.scene.camera.eye;
-        let hidden = self.prepared.ceilings(self.scene).iter().map(of_sun).collect();
-        (hidden, rays.iter().map(|rays| rays.shown(eye)).collect())
-    }
-}
-
-/// Sets the parts of a sun that are not seen from places of pairs, by their numbers, whose unit
-/// normals are given.
-fn hide(
-    occluders: &Occluders,
-    ceiling: &Ceiling,
-    pairs: &[(usize, Places, Vectors)],
-    hidden: &mut [PixelLanes],
-) {
-    let (mut normal, mut points, mut reach) = (Vec3::ZERO, Vec::new(), f32::INFINITY);
-    for (_, places, normals) in pairs {
-        for lane in set_bits(places.covered) {
-            normal += of_lane(normals, lane);
-            points.push(of_lane(&places.relief, lane));
-            reach = reach.min(places.reach.as_array()[lane]);
-        }
-    }
-    let Some(receiver) = Receiver::curved(&points, normal.normalize_or_zero(), reach) else {
-        return;
-    };
-    let disc = ceiling.disc();
-    let sun = Hidden::new(&disc, occluders.between(&receiver, &disc));
-    pairs.iter().for_each(|(i, places, _)| hidden[*i] = sun.share(places, receiver.middle));
-}
-
-/// The view rays of a pair on a curved surface, between the polygon and the deepest relief.
-struct ViewRays {
-    /// Where they pass the polygon, and from there down.
-    polygon: Vectors,
-    way: Vectors,
-    /// Unit normals on the eye's side, and normals as the mesh has them.
-    normal: Vectors,
-    smooth: Vectors,
-    /// See [`Places`].
-    steps: [Vectors; 2],
-    reach: PixelLanes,
-    covered: u8,
-}
-
-impl ViewRays {
-    fn new(scene: &Scene, ground: &Ground, pair: &QuadPair) -> Option<Self> {
-        let LitLanes { position, normal, tangent_u, tangent_v } = pair.lit()?;
-        let frame = FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
-        let (normal, smooth) = (frame.axes[2], normal);
-        let relief_depth = ground.prepared.surface().relief_depth();
-        let moved = displacement(&pair.view(), relief_depth);
-        let across = cross(&tangent_u, &tangent_v);
-        let down = dot(&across, &across).sqrt().sqrt() * relief_depth;
-        let way =
-            [0, 1, 2].map(|i| tangent_u[i] * moved[0] + tangent_v[i] * moved[1] - down * normal[i]);
-        let covered = pair.covered_bits();
-        let steps = steps(&position);
-        Some(Self { polygon: position, way, normal, smooth, steps, reach: down * 2.0, covered })
-    }
-
-    /// All of their points by the axes across a light and to it.
-    fn spots(&self, axes: [Vec3; 3]) -> Spots {
-        let range = |from: PixelLanes, to: PixelLanes| {
-            let [least, most] = [from.fast_min(to), from.fast_max(to)].map(PixelLanes::to_array);
-            set_bits(self.covered)
-                .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
-        };
-        let ranges = axes.map(|axis| {
-            let (from, way) = (along(&self.polygon, axis), along(&self.way, axis));
-            let half =
-                (along(&self.steps[0], axis).abs() + along(&self.steps[1], axis).abs()) * 0.5;
-            let [a, b] = range(from.fast_min(from + way) - half, from.fast_max(from + way) + half);
-            [a, b]
-        });
-        let mean = |of: &Vectors| {
-            let sum = set_bits(self.covered).fold(Vec3::ZERO, |sum, lane| sum + of_lane(of, lane));
-            let mean = sum / (self.covered.count_ones().max(1) as f32);
-            Vec3::from(axes.map(|axis| axis.dot(mean)))
-        };
-        let [x, y, up] = ranges;
-        let polygon = [mean(&self.polygon), mean(&self.normal)];
-        Spots { across: [x, y], lowest: up[0], polygon, reach: range(self.reach, self.reach)[0] }
-    }
-
-    /// How much of each pixel lies on the side that its middle shows: at an outline the normals of a
-    /// smooth mesh turn away within a pixel, and what they turn to is the inside.
-    fn shown(&self, eye: Vec3) -> PixelLanes {
-        let to_eye = [0, 1, 2].map(|i| PixelLanes::splat(eye[i]) - self.polygon[i]);
-        let facing = dot(&to_eye, &self.smooth).to_array();
-        // A part of the kernel's area next to a line through its middle, a pixel wide.
-        const DENSITY: f32 = 0.88;
-        PixelLanes::new(std::array::from_fn(|lane| {
-            let quad = lane / 4 * 4;
-            let [dx, dy] = [1, 2].map(|i| facing[quad + i] - facing[quad]);
-            let growth = (dx * dx + dy * dy).sqrt();
-            let pixels = if growth > 0.0 { facing[lane].abs() / growth } else { 1.0 };
-            (0.5 + DENSITY * pixels).min(1.0)
-        }))
-    }
-}
-
-fn of_lane(vectors: &Vectors, lane: usize) -> Vec3 {
+pub(super) fn of_lane(vectors: &Vectors, lane: usize) -> Vec3 {
     Vec3::from(vectors.map(|axis| axis.as_array()[lane]))
 }
 
-fn along(v: &Vectors, axis: Vec3) -> PixelLanes {
+pub(super) fn along(v: &Vectors, axis: Vec3) -> PixelLanes {
     v[0] * axis.x + v[1] * axis.y + v[2] * axis.z
 }
 
 /// Where the pixels of a pair are in the world.
-struct Places {
+pub(super) struct Places {
     /// Where the view rays of the pixels' centres meet the relief.
-    relief: Vectors,
+    pub(super) relief: Vectors,
     /// Where they pass the polygon.
-    polygon: Vectors,
+    pub(super) polygon: Vectors,
     /// How far that point moves from a column of pixels to the next, and a row.
-    steps: [Vectors; 2],
+    pub(super) steps: [Vectors; 2],
     /// How far above a ray's start a triangle hides nothing that it passes from behind: its own
     /// polygon, or one that stands on it. See [`LightRay::reach`](crate::light::exact::LightRay).
-    reach: PixelLanes,
+    pub(super) reach: PixelLanes,
     /// Which of the pixels are covered.
-    covered: u8,
+    pub(super) covered: u8,
 }
 
 impl Places {
@@ -293,7 +158,7 @@ impl Places {
 }
 
 /// How far a point moves from a column of pixels to the next, and a row.
-fn steps(position: &Vectors) -> [Vectors; 2] {
+pub(super) fn steps(position: &Vectors) -> [Vectors; 2] {
     // Pixels of a quad: lanes 0 and 1 side by side, 0 and 2 one above the other.
     [1, 2].map(|by| {
         position.map(|axis| {
@@ -305,7 +170,7 @@ fn steps(position: &Vectors) -> [Vectors; 2] {
     })
 }
 
-fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Places {
+pub(super) fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Places {
     let LitLanes { position, tangent_u, tangent_v, .. } = *lit;
     let all = Places {
         relief: position,
@@ -330,7 +195,7 @@ fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) ->
 
 impl Hidden {
     /// Of a sun's disc and the triangles that may hide it, from a block's middle.
-    fn new(disc: &Disc, triangles: Vec<[Vec3; 3]>) -> Self {
+    pub(super) fn new(disc: &Disc, triangles: Vec<[Vec3; 3]>) -> Self {
         let across = <[Vec3; 2]>::from(disc.to_middle.any_orthonormal_pair());
         let outline = |triangle: &[Vec3; 3]| {
             // The farther a triangle is, the farther apart are the rays to all of the disc.
@@ -346,7 +211,7 @@ impl Hidden {
     }
 
     /// The part of the sun that pixels do not see.
-    fn share(&self, places: &Places, middle: Vec3) -> PixelLanes {
+    pub(super) fn share(&self, places: &Places, middle: Vec3) -> PixelLanes {
         if self.triangles.is_empty() {
             return PixelLanes::ZERO;
         }
@@ -427,10 +292,10 @@ fn passes(from: &Vectors, direction: Vec3, triangle: &[Vec3; 3], reach: PixelLan
     hides & distance.abs().simd_gt(reach * normal.length())
 }
 
-fn cross(a: &Vectors, b: &Vectors) -> Vectors {
+pub(super) fn cross(a: &Vectors, b: &Vectors) -> Vectors {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn dot(a: &Vectors, b: &Vectors) -> PixelLanes {
+pub(super) fn dot(a: &Vectors, b: &Vectors) -> PixelLanes {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -5,8 +5,8 @@
 //! kept as the nearest sky that is linear in the direction (see [`LinearSky`]), which the relief's
 //! own occlusion is then multiplied with.
 
-use crate::light::LinearSky;
 use crate::light::exact::{LightRay, Occluders};
+use crate::light::{FrameLanes, LinearSky};
 use crate::raster::QuadPair;
 use crate::scene::{Mesh, Scene};
 use glam::Vec3;
@@ -56,15 +56,20 @@ impl Skies {
     }
 
     /// At the pixels of a pair; anything where none is covered.
-    pub(super) fn of_pair(&self, scene: &Scene, pair: &QuadPair) -> [LinearSky; 8] {
+    pub(super) fn of_pair(
+        &self,
+        scene: &Scene,
+        pair: &QuadPair,
+        frame: &FrameLanes,
+    ) -> [LinearSky; 8] {
         let mut skies = [LinearSky::default(); 8];
         let Some(lit) = pair.lit() else { return skies };
+        let is_back = frame.is_back.to_bitmask();
         for lane in pair.covered() {
             let Some(planes) = pair.planes[lane / 4].lit.as_deref() else { continue };
             let [mesh, triangle] = planes.triangle.map(|i| i as usize);
             let place = Vec3::from(lit.position.map(|axis| axis.as_array()[lane]));
-            let normal = Vec3::from(lit.normal.map(|axis| axis.as_array()[lane]));
-            let side = usize::from(normal.dot(scene.camera.eye - place) < 0.0);
+            let side = usize::from(is_back >> lane & 1 == 1);
             skies[lane] = self.of_mesh[mesh].at(&scene.meshes[mesh], (triangle, side), place);
         }
         skies

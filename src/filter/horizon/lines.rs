@@ -239,7 +239,7 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         if let (true, Some(light)) = (LIT, self.grid.light) {
             let p = place * self.grid.step + self.grid.begin;
             let shown = light.at(horizons, between, [self.others + self.xi, p]);
-            (0..3).for_each(|c| values[c] = values[c] * shown[c]);
+            (0..3).for_each(|c| values[c] *= shown[c]);
         } else if CHANNELS > 3 && rows.has_normals() {
             let [near, far] = between.words_at(words, start + 2 * stride).map(|words| {
                 let [a, b] = halves(words).map(unpack_normals);

@@ -22,8 +22,10 @@ pub(super) fn encode<'a>(
         }
     }
     let drawn = settings.drawn();
-    let mut attributes = LayerAttributes::default();
-    attributes.layer_position = Vec2(drawn.x as i32, drawn.y as i32);
+    let attributes = LayerAttributes {
+        layer_position: Vec2(drawn.x as i32, drawn.y as i32),
+        ..LayerAttributes::default()
+    };
     let size = Vec2(drawn.width as usize, drawn.height as usize);
     let layer =
         ExrLayer::new(size, attributes, Encoding::FAST_LOSSLESS, AnyChannels::sort(channels));

@@ -1,0 +1,135 @@
+//! Shadows that meshes throw on curved ones, themselves among them.
+//!
+//! The triangles of a curved mesh lie on all sides of a block of pixels, so that most of those that
+//! are near are its own. A sun's [`Ceiling`] first tells of a few pixels whether anything else may be
+//! in the way: where nothing is, no ray is sent and nothing of the relief is looked for.
+
+use super::ground::Ground;
+use super::shade::Shader;
+use super::shadows::{Hidden, Places, Vectors, along, cross, dot, of_lane, places, steps};
+use crate::light::FrameLanes;
+use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
+use crate::raster::{LitLanes, QuadBlock, QuadPair};
+use crate::relief::displacement;
+use crate::scene::Scene;
+use crate::simd::{PixelLanes, set_bits};
+use glam::Vec3;
+
+/// Least cosine to a sun with which the plane of a few pixels says where their polygons lie.
+const LEAST_FACING: f32 = 0.1;
+
+impl Shader<'_> {
+    /// The parts of each sun that are not seen from the pixels of a block of a curved surface, sun by
+    /// sun and pair by pair, and the part of each pixel that lies on the side that is seen.
+    pub(super) fn hidden_on_curved(
+        &self,
+        ground: &Ground,
+        block: &QuadBlock,
+    ) -> (Vec<Vec<PixelLanes>>, Vec<PixelLanes>) {
+        let occluders = self.prepared.occluders(self.scene);
+        let rays = block.pairs().filter_map(|pair| ViewRays::new(self.scene, ground, &pair));
+        let rays: Vec<_> = rays.collect();
+        let of_sun = |ceiling: &Ceiling| {
+            let mut hidden = vec![PixelLanes::ZERO; rays.len()];
+            let up = ceiling.axes()[2];
+            let mut open = Vec::new();
+            for (i, rays) in rays.iter().enumerate() {
+                // What turns away from a sun is dark without any shadow.
+                let facing = along(&rays.normal, up).to_array();
+                let is_lit = set_bits(rays.covered).any(|lane| facing[lane] > 0.0);
+                // The plane of what is seen edge on from a sun says nothing of where it lies.
+                let is_steep = set_bits(rays.covered).any(|lane| facing[lane] < LEAST_FACING);
+                if is_lit && (is_steep || !ceiling.is_clear(&rays.spots(ceiling.axes()))) {
+                    let pair = block.pair(i);
+                    if let Some(lit) = pair.lit() {
+                        open.push((i, places(&pair, ground, &lit, &rays.normal), rays.normal));
+                    }
+                }
+            }
+            hide(occluders, ceiling, &open, &mut hidden);
+            hidden
+        };
+        let hidden = self.prepared.ceilings(self.scene).iter().map(of_sun).collect();
+        (hidden, rays.iter().map(|rays| rays.shown).collect())
+    }
+}
+
+/// Sets the parts of a sun that are not seen from places of pairs, by their numbers, whose unit
+/// normals are given.
+fn hide(
+    occluders: &Occluders,
+    ceiling: &Ceiling,
+    pairs: &[(usize, Places, Vectors)],
+    hidden: &mut [PixelLanes],
+) {
+    let (mut normal, mut points, mut reach) = (Vec3::ZERO, Vec::new(), f32::INFINITY);
+    for (_, places, normals) in pairs {
+        for lane in set_bits(places.covered) {
+            normal += of_lane(normals, lane);
+            points.push(of_lane(&places.relief, lane));
+            reach = reach.min(places.reach.as_array()[lane]);
+        }
+    }
+    let Some(receiver) = Receiver::curved(&points, normal.normalize_or_zero(), reach) else {
+        return;
+    };
+    let disc = ceiling.disc();
+    let sun = Hidden::new(&disc, occluders.between(&receiver, &disc));
+    pairs.iter().for_each(|(i, places, _)| hidden[*i] = sun.share(places, receiver.middle));
+}
+
+/// The view rays of a pair on a curved surface, between the polygon and the deepest relief.
+struct ViewRays {
+    /// Where they pass the polygon, and from there down.
+    polygon: Vectors,
+    way: Vectors,
+    /// Unit normals on the eye's side.
+    normal: Vectors,
+    /// See [`FrameLanes::shown`].
+    shown: PixelLanes,
+    /// See [`Places`].
+    steps: [Vectors; 2],
+    reach: PixelLanes,
+    covered: u8,
+}
+
+impl ViewRays {
+    fn new(scene: &Scene, ground: &Ground, pair: &QuadPair) -> Option<Self> {
+        let LitLanes { position, normal, tangent_u, tangent_v } = pair.lit()?;
+        let frame = FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
+        let (normal, shown) = (frame.axes[2], frame.shown);
+        let relief_depth = ground.prepared.surface().relief_depth();
+        let moved = displacement(&pair.view(), relief_depth);
+        let across = cross(&tangent_u, &tangent_v);
+        let down = dot(&across, &across).sqrt().sqrt() * relief_depth;
+        let way =
+            [0, 1, 2].map(|i| tangent_u[i] * moved[0] + tangent_v[i] * moved[1] - down * normal[i]);
+        let covered = pair.covered_bits();
+        let steps = steps(&position);
+        Some(Self { polygon: position, way, normal, shown, steps, reach: down * 2.0, covered })
+    }
+
+    /// All of their points by the axes across a light and to it.
+    fn spots(&self, axes: [Vec3; 3]) -> Spots {
+        let range = |from: PixelLanes, to: PixelLanes| {
+            let [least, most] = [from.fast_min(to), from.fast_max(to)].map(PixelLanes::to_array);
+            set_bits(self.covered)
+                .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
+        };
+        let ranges = axes.map(|axis| {
+            let (from, way) = (along(&self.polygon, axis), along(&self.way, axis));
+            let half =
+                (along(&self.steps[0], axis).abs() + along(&self.steps[1], axis).abs()) * 0.5;
+            let [a, b] = range(from.fast_min(from + way) - half, from.fast_max(from + way) + half);
+            [a, b]
+        });
+        let mean = |of: &Vectors| {
+            let sum = set_bits(self.covered).fold(Vec3::ZERO, |sum, lane| sum + of_lane(of, lane));
+            let mean = sum / (self.covered.count_ones().max(1) as f32);
+            Vec3::from(axes.map(|axis| axis.dot(mean)))
+        };
+        let [x, y, up] = ranges;
+        let polygon = [mean(&self.polygon), mean(&self.normal)];
+        Spots { across: [x, y], lowest: up[0], polygon, reach: range(self.reach, self.reach)[0] }
+    }
+}
