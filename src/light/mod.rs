@@ -19,7 +19,7 @@ mod local;
 pub mod reflection;
 mod surface_point;
 
-pub use bake::{Beam, TextureFrame, baked};
+pub use bake::{Beam, TextureFrame, baked, glossy};
 pub use disc::{Disc, spiral};
 pub use local::{LocalLights, Reflected};
 pub use surface_point::SurfacePoint;
