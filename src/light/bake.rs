@@ -128,8 +128,8 @@ pub fn baked(surface: &Surface, beams: &[Beam]) -> Surface {
 }
 
 /// The surface with what it reflects of light that comes straight for its colours, by the albedo,
-/// times the part of each texel that beams reach. Normals stay: what of that gets to the eye depends
-/// on where that is.
+/// times the part of each texel that beams reach. Normals stay: what of that gets to the eye
+/// depends on where that is.
 pub fn glossy(
     surface: &Surface,
     beams: &[Beam],

@@ -106,8 +106,8 @@ impl LocalLights {
         Reflected { diffuse_share: left * (1.0 - material.metallic), added }
     }
 
-    /// The sky that a surface reflects, a blend of what a mirror shows and, the rougher, of all that
-    /// lies around that.
+    /// The sky that a surface reflects, a blend of what a mirror shows and, the rougher, of all
+    /// that lies around that.
     fn mirrored(&self, normal: Vec3, alpha_squared: f32, sky: &Sky) -> Vec3 {
         if sky.is_uniform() {
             return self.ambient;

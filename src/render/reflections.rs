@@ -1,12 +1,14 @@
 //! What comes on top of baked light: what surfaces send out by themselves, and what they reflect.
 //!
-//! A reflection depends on the eye and cannot be baked. What can is how much texels reflect of light
-//! that comes straight, times the part of them that suns reach. The horizon sweeps these with their
-//! normals, and takes a sun's lobe around the normal of each line and bin: the mean is of highlights.
-//! The half vector is the same for all normals of a pixel, so Fresnel's factor comes once.
+//! A reflection depends on the eye and cannot be baked. What can is how much texels reflect of
+//! light that comes straight, times the part of them that suns reach. The horizon sweeps these with
+//! their normals, and takes a sun's lobe around the normal of each line and bin: the mean is of
+//! highlights. The half vector is the same for all normals of a pixel, so Fresnel's factor comes
+//! once.
 //!
-//! The sky is reflected by the mean normal that is seen. Other filters take the mean normal from the mip
-//! levels around the hit for all of it, over whatever relief is in between. Other meshes hide nothing.
+//! The sky is reflected by the mean normal that is seen. Other filters take the mean normal from
+//! the mip levels around the hit for all of it, over whatever relief is in between. Other meshes
+//! hide nothing.
 
 use super::ground::{Ground, in_lanes};
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
