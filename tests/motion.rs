@@ -61,8 +61,8 @@ fn errors_stay_where_the_camera_moves() {
 
 #[test]
 fn errors_stay_where_the_sun_moves() {
-    // Light is baked for all filters, so that rays flicker as little: a hundredth of the square of a
-    // byte's step is 1.5e-7.
+    // Light is baked for all filters, so that rays flicker as little: a hundredth of the square of
+    // a byte's step is 1.5e-7.
     let flickers = flickers(&[floor(0.0, 0.0), floor(0.0, 0.1)]);
     assert!(flickers.iter().all(|flicker| *flicker <= 1.5e-7), "{flickers:?}");
 }

@@ -121,18 +121,40 @@ impl TextureFrame {
 
 /// The surface lit by beams; it needs no normals any more.
 pub fn baked(surface: &Surface, beams: &[Beam]) -> Surface {
+    let [along_u, along_v] = summed(surface, beams, true);
+    surface.with_colors(false, |x, y, albedo| {
+        std::array::from_fn(|c| albedo[c] * (along_u.at(x, y)[c] + along_v.at(y, x)[c]))
+    })
+}
+
+/// The surface with what it reflects of light that comes straight for its colours, by the albedo,
+/// times the part of each texel that beams reach. Normals stay: what of that gets to the eye
+/// depends on where that is.
+pub fn glossy(
+    surface: &Surface,
+    beams: &[Beam],
+    straight: impl Fn([f32; 3]) -> Vec3 + Sync,
+) -> Surface {
+    let all = beams.iter().fold(0.0, |sum, beam| sum + beam.intensity.element_sum());
+    let share = |beam: &Beam| Vec3::splat(beam.intensity.element_sum() / all);
+    let beams: Vec<_> = beams.iter().map(|b| Beam { intensity: share(b), ..*b }).collect();
+    let [along_u, along_v] = summed(surface, &beams, false);
+    surface.with_colors(true, |x, y, albedo| {
+        (straight(albedo) * (along_u.at(x, y)[0] + along_v.at(y, x)[0])).to_array()
+    })
+}
+
+/// The light of beams at each texel: by rows along u and along v, to be added up.
+fn summed(surface: &Surface, beams: &[Beam], by_cosine: bool) -> [Sums; 2] {
     let level = surface.base();
     let [width, height] = level.size();
     let mut sums = [Sums::new([width, height]), Sums::new([height, width])];
     for beam in beams {
         let displacement = beam.slope.map(|slope| slope * surface.relief_depth());
         let lit = LitParts::new(level, displacement, surface.relief_depth());
-        sums[usize::from(lit.is_turned)].add(level, beam, &lit);
+        sums[usize::from(lit.is_turned)].add(level, beam, &lit, by_cosine);
     }
-    let [along_u, along_v] = &sums;
-    surface.with_colors(|x, y, albedo| {
-        std::array::from_fn(|c| albedo[c] * (along_u.at(x, y)[c] + along_v.at(y, x)[c]))
-    })
+    sums
 }
 
 /// What lights a white surface at each texel, row by row.
@@ -148,8 +170,8 @@ impl Sums {
         Self { width, lanes }
     }
 
-    /// Adds a beam's light.
-    fn add(&mut self, level: &Level, beam: &Beam, lit: &LitParts) {
+    /// Adds a beam's light, by its cosine to the texels' normals if wanted.
+    fn add(&mut self, level: &Level, beam: &Beam, lit: &LitParts, by_cosine: bool) {
         let rows = level.rows(lit.is_turned);
         let pitch = self.width.div_ceil(8);
         let [x, y, z] = beam.to_light.to_array();
@@ -159,6 +181,7 @@ impl Sums {
                 lit.row(row, scratch, parts);
                 for (i, (sums, parts)) in sums.iter_mut().zip(parts.chunks_exact(8)).enumerate() {
                     let cos = match rows.normals(i * 8, row) {
+                        _ if !by_cosine => TexelLanes::ONE,
                         Some(words) => {
                             let [nx, ny, nz] = unpack_normals(words);
                             (nx * x + ny * y + nz * z).fast_max(TexelLanes::ZERO)

@@ -17,6 +17,8 @@ pub struct LocalLights {
     pub to_eye: Vec3,
     /// The frame's axes in the world.
     pub axes: [Vec3; 3],
+    /// Where what shines is asked for in place of what is diffuse: the square of `a` of a texel.
+    pub gloss: Option<f32>,
 }
 
 /// What light does with a surface: what the diffuse layer shows, and what comes on top of it.
@@ -46,7 +48,8 @@ impl LocalLights {
             (local(to_light), intensity)
         });
         let to_eye = local((eye - point.position).normalize_or_zero());
-        Self { ambient: sky.irradiance(normal), lights: lights.collect(), to_eye, axes }
+        let (ambient, lights) = (sky.irradiance(normal), lights.collect());
+        Self { ambient, lights, to_eye, axes, gloss: None }
     }
 
     /// What an albedo of 1 is multiplied with under a normal.
@@ -58,13 +61,27 @@ impl LocalLights {
         })
     }
 
-    /// What a material of base colour `base` does with the light under a mean normal.
+    /// The same lights, of each of which highlights hold what a surface reflects that reflects
+    /// `straight` of light that comes straight, as a share of that.
+    pub fn glossy(&self, material: &Material, fresnel: &Fresnel) -> Self {
+        let alpha = reflection::alpha(material.roughness);
+        let lights = self.lights.iter().map(|(to_light, intensity)| {
+            let half = (*to_light + self.to_eye).normalize_or_zero();
+            let straight = fresnel.straight.max(Vec3::splat(1e-6));
+            (*to_light, *intensity * fresnel.at(half.dot(self.to_eye)) / straight)
+        });
+        Self { lights: lights.collect(), gloss: Some(alpha * alpha), ..*self }
+    }
+
+    /// What a material of base colour `base` does with the light under a mean normal; of highlights
+    /// what is given, else those of the mean normal.
     pub fn reflected(
         &self,
         mean_normal: Vec3,
         (material, base): (&Material, Vec3),
         sky: &Sky,
         reflectance: &Reflectance,
+        highlights: Option<Vec3>,
     ) -> Reflected {
         // Normals that cancel out leave no length to divide by, and rounding may make a mean too
         // long.
@@ -77,7 +94,8 @@ impl LocalLights {
         let of_sky = reflectance.at(n_v, alpha_squared.sqrt());
         let mut added = material.emissive;
         added += fresnel.of_sky(of_sky) * self.mirrored(normal, alpha_squared, sky);
-        for (to_light, intensity) in &self.lights {
+        added += highlights.unwrap_or(Vec3::ZERO);
+        for (to_light, intensity) in self.lights.iter().filter(|_| highlights.is_none()) {
             let half = (*to_light + self.to_eye).normalize_or_zero();
             let share = fresnel.at(half.dot(self.to_eye));
             let n_l = normal.dot(*to_light);
@@ -88,8 +106,8 @@ impl LocalLights {
         Reflected { diffuse_share: left * (1.0 - material.metallic), added }
     }
 
-    /// The sky that a surface reflects, a blend of what a mirror shows and, the rougher, of all that
-    /// lies around that.
+    /// The sky that a surface reflects, a blend of what a mirror shows and, the rougher, of all
+    /// that lies around that.
     fn mirrored(&self, normal: Vec3, alpha_squared: f32, sky: &Sky) -> Vec3 {
         if sky.is_uniform() {
             return self.ambient;

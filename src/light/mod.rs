@@ -21,7 +21,7 @@ mod local;
 pub mod reflection;
 mod surface_point;
 
-pub use bake::{Beam, TextureFrame, baked};
+pub use bake::{Beam, TextureFrame, baked, glossy};
 pub use curved::{Curved, CurvedSun, FrameLanes, LinearSky, Slant};
 pub use disc::{Disc, spiral};
 pub use horizons::{Horizons, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE};

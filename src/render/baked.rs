@@ -9,7 +9,8 @@ use super::ground::LitPiece;
 use super::open_sky::{Facing, OpenSky, Plane};
 use crate::filter::Prepared;
 use crate::light::exact::Occluders;
-use crate::light::{TextureFrame, baked};
+use crate::light::reflection::Fresnel;
+use crate::light::{TextureFrame, baked, glossy};
 use crate::scene::{Light, Material, Mesh, Scene, Sky};
 use glam::Vec3;
 
@@ -65,6 +66,8 @@ struct Side {
     /// See [`LitPiece::apart`].
     apart: Vec<Prepared>,
     open_sky: Option<OpenSky>,
+    /// See [`LitPiece::gloss`].
+    gloss: Option<Prepared>,
 }
 
 impl Baked {
@@ -176,9 +179,12 @@ impl Baked {
 
     /// The lit surface of a [group](Self::group).
     pub(crate) fn of_group(&self, group: usize) -> Option<(&Prepared, LitPiece<'_>)> {
-        let Side { normal, lit, apart, open_sky } =
+        let Side { normal, lit, apart, open_sky, gloss } =
             self.pieces[group / 2].sides[group % 2].as_ref()?;
-        Some((lit, LitPiece { normal: *normal, apart, open_sky: open_sky.as_ref() }))
+        Some((
+            lit,
+            LitPiece { normal: *normal, apart, open_sky: open_sky.as_ref(), gloss: gloss.as_ref() },
+        ))
     }
 
     /// A triangle's piece, and which side the camera sees: 0 for the front.
@@ -217,7 +223,14 @@ impl Piece {
             }
             open_sky = self.open_sky(side, (scene, occluders()), unlit);
         }
-        Some(Side { normal, lit: lit(&scene.lights, &scene.sky)?, apart, open_sky })
+        let material = &scene.materials[self.material];
+        let suns = frame.beams(&scene.lights, &Sky::default())?;
+        let gloss = (!material.is_matte() && !suns.is_empty()).then(|| {
+            let base = |albedo: [f32; 3]| Vec3::from(albedo) * material.base_color;
+            let straight = |albedo| Fresnel::new(material, base(albedo)).straight;
+            unlit.recolored(glossy(unlit.surface(), &suns, straight))
+        });
+        Some(Side { normal, lit: lit(&scene.lights, &scene.sky)?, apart, open_sky, gloss })
     }
 
     /// What other meshes leave of the sky to that side.

@@ -42,6 +42,8 @@ pub(crate) struct LitPiece<'a> {
     pub(crate) normal: Vec3,
     /// Under the sky alone, and under each sun alone; nothing where no mesh can hide a sun from it.
     pub(crate) apart: &'a [Prepared],
+    /// What suns show of a glossy surface that the horizon's highlights are made of.
+    pub(crate) gloss: Option<&'a Prepared>,
     /// What meshes leave of the sky, where they hide any of it.
     pub(crate) open_sky: Option<&'a OpenSky>,
 }

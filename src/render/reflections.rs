@@ -1,15 +1,23 @@
 //! What comes on top of baked light: what surfaces send out by themselves, and what they reflect.
 //!
-//! A reflection depends on the eye and cannot be baked. It is that of the mean normal, from the mip
-//! levels around the hit, and of the base colour there: lights reach it unless the polygon faces
-//! away, over whatever relief and meshes are in between.
+//! A reflection depends on the eye and cannot be baked. What can is how much texels reflect of
+//! light that comes straight, times the part of them that suns reach. The horizon sweeps these with
+//! their normals, and takes a sun's lobe around the normal of each line and bin: the mean is of
+//! highlights. The half vector is the same for all normals of a pixel, so Fresnel's factor comes
+//! once.
+//!
+//! The sky is reflected by the mean normal that is seen. Other filters take the mean normal from
+//! the mip levels around the hit for all of it, over whatever relief is in between. Other meshes
+//! hide nothing.
 
 use super::ground::{Ground, in_lanes};
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
-use crate::filter::{Batch, Filtered};
+use crate::filter::{Batch, Filtered, Prepared};
+use crate::light::reflection::Fresnel;
 use crate::raster::QuadBlock;
 use crate::settings::{Filter, Trilinear};
 use crate::simd::PixelLanes;
+use crate::texture::FULL_F32;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -43,6 +51,7 @@ impl Shader<'_> {
         colors: &mut [[PixelLanes; 3]],
     ) {
         let ShadeScratch { filter, footprints, lights, filtered } = scratch;
+        let (material, surface) = (ground.material, ground.unlit.surface());
         let mips = Filter::Trilinear(Trilinear::default());
         self.footprints((ground.unlit, &mips.traits().rule), (block, pairs.clone()), footprints);
         lights.clear();
@@ -50,20 +59,52 @@ impl Shader<'_> {
         filtered.resize(pairs.len(), Filtered::default());
         let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
         self.count(mips.colors(ground.unlit, &batch, filter, filtered));
+        let bases: Vec<_> = footprints
+            .iter()
+            .zip(&*filtered)
+            .flat_map(|(pixels, filtered)| pixels.covered().map(|lane| filtered.lane(lane)))
+            .collect();
+        let gloss = self.gloss(ground).inspect(|(gloss, horizon)| {
+            let straight = Fresnel::new(material, mean_base(ground));
+            let glossy: Vec<_> =
+                lights.iter().map(|lights| lights.glossy(material, &straight)).collect();
+            self.footprints((gloss, &horizon.traits().rule), (block, pairs), footprints);
+            let batch =
+                Batch { pixels: footprints, lights: &glossy, curved: None, is_alone: false };
+            self.count(horizon.colors(gloss, &batch, filter, filtered));
+        });
         // The lights come in the order in which they were listed.
-        let mut lights = lights.iter();
+        let mut each = lights.iter().zip(bases);
         for (color, (pixels, filtered)) in colors.iter_mut().zip(footprints.iter().zip(&*filtered))
         {
             let mut lit = [Vec3::ZERO; 8];
             let diffuse = color.map(|channel| channel.to_array());
-            for (lane, lights) in pixels.covered().zip(&mut lights) {
-                let texel = filtered.lane(lane);
-                let base = ground.color_of(ground.unlit.surface(), &texel);
-                let on_top = self.reflected(ground.material, base, texel.normal.into(), lights);
+            for (lane, (lights, texel)) in pixels.covered().zip(&mut each) {
+                let seen = filtered.lane(lane);
+                let base = ground.color_of(surface, &texel);
+                let highlights = gloss.map(|(gloss, _)| {
+                    Vec3::from(seen.color) * (gloss.surface().color_scale() / FULL_F32)
+                });
+                let normal = seen.normal.into();
+                let on_top = self.reflected((material, base), normal, lights, highlights);
                 let diffuse = Vec3::from(diffuse.map(|channel| channel[lane]));
                 lit[lane] = diffuse * on_top.diffuse_share + on_top.added;
             }
             *color = in_lanes(&lit);
         }
     }
+
+    /// What highlights are made of, where it is the horizon that draws.
+    fn gloss<'a>(&self, ground: &Ground<'a>) -> Option<(&'a Prepared, &Filter)> {
+        let filter = &self.settings.filter;
+        let gloss = ground.baked?.gloss?;
+        matches!(filter, Filter::Horizon(_)).then_some((gloss, filter))
+    }
+}
+
+/// The mean base colour of a surface.
+fn mean_base(ground: &Ground) -> Vec3 {
+    let surface = ground.unlit.surface();
+    let coarsest = &surface.levels()[surface.last_level()];
+    ground.color_of(surface, &coarsest.texel(0, 0))
 }

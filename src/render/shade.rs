@@ -30,7 +30,7 @@ type Colors = Vec<[PixelLanes; 3]>;
 /// Shades quads of a frame.
 pub(crate) struct Shader<'a> {
     pub(super) scene: &'a Scene,
-    settings: &'a Settings,
+    pub(super) settings: &'a Settings,
     pub(super) prepared: &'a PreparedScene,
     pub(crate) traits: Traits,
     /// Where rays go, where there are many a pixel.
@@ -313,20 +313,20 @@ impl<'a> Shader<'a> {
             // What has this colour in this light.
             base /= lights.diffuse(normal, sky).max(Vec3::splat(1e-6));
         }
-        let reflected = self.reflected(material, base, normal, lights);
+        let reflected = self.reflected((material, base), normal, lights, None);
         diffuse * reflected.diffuse_share + reflected.added
     }
 
     /// What a material whose base colour is `base` does with lights.
     pub(super) fn reflected(
         &self,
-        material: &Material,
-        base: Vec3,
+        (material, base): (&Material, Vec3),
         normal: Vec3,
         lights: &LocalLights,
+        highlights: Option<Vec3>,
     ) -> Reflected {
         let reflectance = self.prepared.reflectance();
-        lights.reflected(normal, (material, base), &self.scene.sky, reflectance)
+        lights.reflected(normal, (material, base), &self.scene.sky, reflectance, highlights)
     }
 
     /// Lists the lights of the covered pixels of pairs of a block, pair by pair and lane by lane.

@@ -114,9 +114,10 @@ impl Surface {
 
     /// The surface with other colours on its base level, and their means on the levels above:
     /// `color` gives the linear RGB, 0 or more, of the texel at a column and row from what it was.
-    /// Heights stay, normals do not.
+    /// Heights stay, and normals where they are kept.
     pub(crate) fn with_colors(
         &self,
+        keeps_normals: bool,
         color: impl Fn(usize, usize, [f32; 3]) -> [f32; 3] + Sync,
     ) -> Self {
         let [width, height] = self.base().size();
@@ -135,16 +136,18 @@ impl Surface {
         // any order.
         let color_scale = brightest.reduce(|| 0.0, f32::max).max(f32::MIN_POSITIVE);
         let to_stored = FULL_F32 / color_scale;
+        let num_planes = if keeps_normals && self.has_normals() { 3 } else { 2 };
         let mut texels = vec![PackedTexel::default(); width * height];
         texels.par_chunks_exact_mut(width).enumerate().for_each(|(y, texels)| {
             let old = rows.texels(y).zip(&colors[y * width..]);
-            for (texel, ([_, b, _], color)) in texels.iter_mut().zip(old) {
+            for (texel, ([_, b, normal], color)) in texels.iter_mut().zip(old) {
                 let [red, green, blue] = color.map(|c| ((c * to_stored + 0.5) as u32).min(FULL));
-                *texel = [red | green << 16, blue | b & 0xffff_0000, 0];
+                let normal = if num_planes == 3 { normal } else { 0 };
+                *texel = [red | green << 16, blue | b & 0xffff_0000, normal];
             }
         });
         // A mirrored pattern is stored with its mirror images, each lit as it lies.
-        let levels = pyramid::build(texels, [width, height], self.wrap, 2);
+        let levels = pyramid::build(texels, [width, height], self.wrap, num_planes);
         Self { levels, color_scale, ..*self }
     }
 

@@ -1,6 +1,7 @@
 //! `basrelief render --view`: a whole frame of numbers as colours.
 
 use crate::options::render::RenderOptions;
+use crate::options::settings::Look;
 use crate::options::threads::thread_pool;
 use crate::output;
 use crate::pictures::measured::draw;
@@ -11,7 +12,7 @@ use std::process::ExitCode;
 
 /// Draws the numbers of a frame.
 pub(crate) fn run(options: &RenderOptions, view: View) -> Result<ExitCode, Refusal> {
-    let mut settings = options.settings.settings(false)?;
+    let mut settings = options.settings.settings(Look::default())?;
     if view == View::Visible {
         settings.filter = options.settings.filter.inspected(settings.filter);
     }

@@ -26,7 +26,7 @@ pub(crate) fn run(mut options: RenderOptions) -> Result<ExitCode, Refusal> {
     if let Some(view) = options.view.view {
         return measure::run(&options, view);
     }
-    let mut settings = options.settings.settings(options.scene.has_lights())?;
+    let mut settings = options.settings.settings(options.scene.look())?;
     let layers = options.layers.files()?;
     let draws_picture = options.output.is_some() || layers.is_empty();
     if !draws_picture {

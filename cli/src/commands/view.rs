@@ -14,7 +14,7 @@ use std::time::Duration;
 /// Opens a window on the scene that the options name.
 pub(crate) fn run(mut options: ViewerOptions) -> Result<ExitCode, Refusal> {
     scene_file::read_into(&mut options.scene, &mut options.settings)?;
-    let settings = options.settings.settings(options.scene.has_lights())?;
+    let settings = options.settings.settings(options.scene.look())?;
     if settings.region.is_some() {
         return Err("--region: a window shows the whole picture".into());
     }

@@ -138,7 +138,7 @@ impl Cli {
             return Ok(None);
         };
         options.scene.set(scene);
-        options.settings.settings(options.scene.has_lights()).map(Some)
+        options.settings.settings(options.scene.look()).map(Some)
     }
 }
 

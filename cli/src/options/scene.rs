@@ -4,6 +4,7 @@
 
 use crate::options::choices::{self, ON_OFF, one_of};
 use crate::options::file_values::{self, PointLight, Spelt, Sun};
+use crate::options::settings::Look;
 use crate::options::values;
 use crate::progress::Progress;
 use crate::refusal::Refusal;
@@ -11,7 +12,7 @@ use basrelief::load::{
     self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY,
 };
 use basrelief::texture::Wrap;
-use basrelief::{Camera, Light, Scene, Settings, Sky, scene};
+use basrelief::{Camera, Light, Scene, Settings, Sky, Tone, scene};
 use clap::Args;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -175,8 +176,23 @@ pub(crate) struct LightOptions {
 }
 
 impl SceneOptions {
+    /// How a picture of the scene is where no option says so: the built-in scene is lit, others where
+    /// a light is given.
+    pub(crate) fn look(&self) -> Look {
+        match self.model {
+            None => Look { is_lit: true, tone: Tone::Neutral },
+            Some(_) => Look { is_lit: self.has_lights(), ..Look::default() },
+        }
+    }
+
+    /// [`Self::look`] of a study, which of the built-in scene compares what filters make of its
+    /// colours, and has to draw the truth of it.
+    pub(crate) fn look_of_study(&self) -> Look {
+        Look { is_lit: self.has_lights(), ..Look::default() }
+    }
+
     /// Whether a light is given.
-    pub(crate) fn has_lights(&self) -> bool {
+    fn has_lights(&self) -> bool {
         let light = &self.light;
         !light.sun.is_empty()
             || !light.point_light.is_empty()

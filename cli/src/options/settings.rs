@@ -44,14 +44,32 @@ pub(crate) struct FrameOptions {
     /// How many times the light of the picture is doubled, -32 to 32 [default: 0]
     #[arg(long, value_name = "EV", value_parser = values::number, allow_hyphen_values = true)]
     exposure: Option<f32>,
-    /// How light is brought within the range of a picture; EXR stays as it is [default: none]
+    /// How light is brought within the range of a picture; EXR stays as it is [default: neutral for
+    /// the built-in scene, else none]
     #[arg(long, value_name = "HOW", value_parser = one_of(choices::TONES))]
     #[serde(with = "choices")]
     tone: Option<Tone>,
-    /// Whether lights are evaluated [default: unlit, or lit where a light is given]
+    /// Whether lights are evaluated [default: lit for the built-in scene
+    /// and where a light is given, else unlit]
     #[arg(long, value_name = "HOW", value_parser = one_of(choices::LIGHTING))]
     #[serde(with = "choices")]
     lighting: Option<Lighting>,
+}
+
+/// How a picture is where no option says so.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    /// Whether it is lit.
+    pub(crate) is_lit: bool,
+    pub(crate) tone: Tone,
+}
+
+impl Default for Look {
+    /// That of a scene of which nothing is known.
+    fn default() -> Self {
+        let Settings { lighting, tone, .. } = Settings::default();
+        Self { is_lit: lighting == Lighting::Lit, tone }
+    }
 }
 
 impl SettingsOptions {
@@ -60,16 +78,16 @@ impl SettingsOptions {
         self.frame.size.is_some()
     }
 
-    /// The settings; `has_lights` says whether the options name a light.
-    pub(crate) fn settings(&self, has_lights: bool) -> Result<Settings, Refusal> {
+    /// The settings.
+    pub(crate) fn settings(&self, look: Look) -> Result<Settings, Refusal> {
         self.check()?;
-        Ok(self.unchecked(has_lights))
+        Ok(self.unchecked(look))
     }
 
     /// Checks all but the number of pixels: a picture may be larger than a frame, and is then drawn
     /// part by part. An option of a filter must be within its range whatever filter is chosen.
     pub(crate) fn check(&self) -> basrelief::Result<()> {
-        let settings = self.unchecked(false);
+        let settings = self.unchecked(Look::default());
         let Region { x, y, .. } = settings.drawn();
         let is_within = settings.drawn().is_within(settings.width, settings.height);
         let pixel = Region { x, y, width: 1, height: 1 };
@@ -79,7 +97,7 @@ impl SettingsOptions {
     }
 
     /// The settings, whose numbers may be out of their ranges.
-    fn unchecked(&self, has_lights: bool) -> Settings {
+    fn unchecked(&self, look: Look) -> Settings {
         let Self { frame, filter } = self;
         let default = Settings::default();
         let [width, height] =
@@ -90,13 +108,13 @@ impl SettingsOptions {
             region: frame.region.as_ref().map(|region| region.value),
             filter: filter.chosen(),
             parallax: filter.parallax.unwrap_or(default.parallax),
-            lighting: frame.lighting.unwrap_or(if has_lights {
+            lighting: frame.lighting.unwrap_or(if look.is_lit {
                 Lighting::Lit
             } else {
                 Lighting::Unlit
             }),
             exposure: frame.exposure.unwrap_or(default.exposure),
-            tone: frame.tone.unwrap_or(default.tone),
+            tone: frame.tone.unwrap_or(look.tone),
             cull_back_faces: frame.cull.unwrap_or(default.cull_back_faces),
             msaa: frame.msaa.unwrap_or(default.msaa),
             tile_size: frame.tile.unwrap_or(default.tile_size),
@@ -143,7 +161,7 @@ mod tests {
     }
 
     fn parse(line: &str) -> Result<Settings, Refusal> {
-        options(line)?.settings(false)
+        options(line)?.settings(Look::default())
     }
 
     #[test]
@@ -166,7 +184,7 @@ mod tests {
         }
         assert_eq!(line.len(), 20, "{line:?}");
         let options = options(&line.join(" ")).unwrap();
-        assert_eq!(options.settings(false).unwrap(), Settings::default());
+        assert_eq!(options.settings(Look::default()).unwrap(), Settings::default());
         assert_eq!(Filter::ALL.map(|filter| options.filter.apply(filter)), Filter::ALL);
     }
 
@@ -188,7 +206,12 @@ mod tests {
                 cull_back_faces: true,
                 ..Settings::default()
             };
-            assert_eq!(SettingsOptions::from(&settings).settings(true).unwrap(), settings);
+            assert_eq!(
+                SettingsOptions::from(&settings)
+                    .settings(Look { is_lit: true, ..Look::default() })
+                    .unwrap(),
+                settings
+            );
         }
     }
 
@@ -201,6 +224,7 @@ mod tests {
         let ewa = Ewa {
             derivatives,
             formulas,
+            lines: 6,
             texel_budget,
             max_anisotropy,
             every_texel: true,
@@ -245,7 +269,7 @@ mod tests {
             tone: Tone::Neutral,
             tile_size: 16,
         };
-        assert_eq!(options.settings(false).unwrap(), expected);
+        assert_eq!(options.settings(Look::default()).unwrap(), expected);
     }
 
     #[test]

@@ -56,8 +56,8 @@ impl Latest {
         Self { width, wrap: rows.wrap(), shear, first_line, num_lines, height, groups }
     }
 
-    /// Those of a row of texels, into `to`, which is made as long as the level is wide; `lines` is a
-    /// buffer.
+    /// Those of a row of texels, into `to`, which is made as long as the level is wide; `lines` is
+    /// a buffer.
     pub(super) fn row(&self, y: usize, lines: &mut Vec<f32>, to: &mut Vec<f32>) {
         // Put the lines of the row side by side, the first one again after the last.
         lines.clear();

@@ -1,13 +1,13 @@
 //! What texels take of the light on the segments beside them.
 //!
-//! A texel's part is interpolated along each segment beside it. Of a segment whose part `f` is lit, the
-//! end next to its far texel, the tents of both texels make `1 - (1 - f)^2` and `f^2`: then the mean is
-//! `f`, and the end of a shadow falls where it is, between texels.
+//! A texel's part is interpolated along each segment beside it. Of a segment whose part `f` is lit,
+//! the end next to its far texel, the tents of both texels make `1 - (1 - f)^2` and `f^2`: then the
+//! mean is `f`, and the end of a shadow falls where it is, between texels.
 //!
 //! The lower part of a wall that rises by many texels from one to the next is lit only where the
-//! light is high, and seen only from above. Who sees no more of it than its lit end must find it lit,
-//! and the colour there is that of both texels, so both take nearly all of a wall's light; and a
-//! wall is long, so its foot takes more from it than from the ground before it.
+//! light is high, and seen only from above. Who sees no more of it than its lit end must find it
+//! lit, and the colour there is that of both texels, so both take nearly all of a wall's light; and
+//! a wall is long, so its foot takes more from it than from the ground before it.
 //!
 //! ```text
 //!      lit  ____i                  tents          1 - (1-f)^2   f^2
@@ -23,8 +23,8 @@ use crate::simd::TexelLanes;
 /// Least length of a segment, in texels, that is divided by.
 const LEAST_SEGMENT: f32 = 1e-6;
 
-/// The rise, in texels, from which on a segment is taken for a wall, and how much more makes it half of
-/// one. Where a softer change begins at once, walls of mail lose 0.3 dB.
+/// The rise, in texels, from which on a segment is taken for a wall, and how much more makes it
+/// half of one. Where a softer change begins at once, walls of mail lose 0.3 dB.
 pub(super) const STEEP: f32 = 4.0;
 const HALF_A_WALL: f32 = 12.0;
 
@@ -49,7 +49,8 @@ pub(super) struct Share {
 }
 
 impl Share {
-    /// Takes the far end of segments that light passes, by their lit part and their rise or fall in texels.
+    /// Takes the far end of segments that light passes, by their lit part and their rise or fall in
+    /// texels.
     #[inline(always)]
     pub(super) fn add_far(&mut self, lit: TexelLanes, rise: TexelLanes) {
         let steep = steepness(rise);
@@ -63,8 +64,8 @@ impl Share {
         self.add(near(lit, steep), rise * steep + 1.0);
     }
 
-    /// Takes an end of walls beside the light, which weigh nothing unless they are steep, by how far the
-    /// texels at both ends lie above the last light that is cut off.
+    /// Takes an end of walls beside the light, which weigh nothing unless they are steep, by how
+    /// far the texels at both ends lie above the last light that is cut off.
     #[inline(always)]
     pub(super) fn add_wall(&mut self, own: TexelLanes, other: TexelLanes, rise: TexelLanes) {
         let steep = steepness(rise);

@@ -31,21 +31,8 @@ pub fn builtin() -> Scene {
     let (street, arch) =
         rayon::join(|| surface(&street_style(), 1024, 0.06), || surface(&arch_style(), 512, 0.05));
     let materials = vec![
-        Material {
-            name: "street".into(),
-            // Worn smooth, and damp.
-            specular: 1.0,
-            roughness: 0.45,
-            surface: street,
-            ..Material::default()
-        },
-        Material {
-            name: "arch".into(),
-            specular: 1.0,
-            roughness: 0.65,
-            surface: arch,
-            ..Material::default()
-        },
+        Material { name: "street".into(), surface: street, ..Material::default() },
+        Material { name: "arch".into(), surface: arch, ..Material::default() },
     ];
     Scene {
         meshes: vec![street_mesh(), arch_mesh()],
@@ -75,7 +62,7 @@ fn surface(style: &Style, size: u32, relief_depth: f32) -> Option<Arc<Surface>> 
     Some(Arc::new(surface))
 }
 
-/// Granite setts, worn and damp.
+/// Granite setts.
 fn street_style() -> Style {
     Style {
         bond: Bond::Cobbles,

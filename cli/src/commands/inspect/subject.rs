@@ -1,6 +1,7 @@
 //! What is inspected: a pixel of a scene, by options or as a figure of the paper.
 
 use crate::options::inspect::InspectOptions;
+use crate::options::settings::Look;
 use crate::pictures::inspection::palette::Layers;
 use crate::progress::Progress;
 use crate::refusal::Refusal;
@@ -29,7 +30,7 @@ impl Subject {
             });
         }
         let pixel = options.pixel.ok_or("the pixel is missing: say --pixel X,Y, or --figure N")?;
-        let mut settings = options.settings.settings(false)?;
+        let mut settings = options.settings.settings(Look::default())?;
         settings.filter = options.settings.filter.inspected(settings.filter);
         if settings.region.is_some() {
             return Err("--region: a pixel is named by its place in the whole picture".into());

@@ -42,7 +42,7 @@ pub(crate) fn run(mut options: StudyOptions) -> Result<ExitCode, Refusal> {
 
 /// The settings that all trials share.
 fn settings_of(options: &StudyOptions, of_file: &SettingsOptions) -> Result<Settings, Refusal> {
-    let mut settings = of_file.settings(options.scene.has_lights())?;
+    let mut settings = of_file.settings(options.scene.look_of_study())?;
     if let Some([width, height]) = options.size.or((!of_file.has_size()).then_some([640, 360])) {
         (settings.width, settings.height) = (width, height);
     }
