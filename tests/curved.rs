@@ -193,12 +193,14 @@ fn horizons_say_what_sweeps_along_the_light_say() {
                     let word = horizons.texel(x as i32, y as i32)[azimuth / 4];
                     let root = (word >> (azimuth % 4 * 8) & 0xff) as f32 / 255.0;
                     let above = if height > root * root { 1.0 } else { 0.0 };
-                    sum += (lit - above).abs();
+                    // Of a texel at the edge of a shadow the sweep lights a part.
+                    if !(0.1..0.9).contains(&lit) {
+                        sum += (lit.round() - above).abs();
+                    }
                 }
             }
             let mean = sum / (64.0 * 64.0);
-            // Sweeps light the texels at the edges of shadows in part.
-            assert!(mean < 0.08, "azimuth {azimuth}, height {height}: {mean}");
+            assert!(mean < 0.05, "azimuth {azimuth}, height {height}: {mean}");
         }
     }
 }

@@ -5,13 +5,8 @@
 
 use super::ground::{Ground, Swept};
 use super::shade::{ShadeScratch, Shader};
-use super::skies::Skies;
-use crate::light::{Curved, CurvedSun, Disc, FrameLanes, LinearSky, Slant};
-use crate::raster::{LitLanes, QuadBlock};
-use crate::scene::{Light, Scene};
+use crate::raster::QuadBlock;
 use crate::simd::PixelLanes;
-use glam::Vec3;
-use std::ops::Range;
 
 impl Shader<'_> {
     /// Appends the lit colours of a block's pairs.
@@ -54,58 +49,5 @@ impl Shader<'_> {
         for (color, shown) in colors[start..].iter_mut().zip(shown) {
             color.iter_mut().for_each(|channel| *channel *= shown);
         }
-    }
-}
-
-/// What lights pairs of a block.
-#[derive(Debug)]
-pub(super) struct CurvedLights {
-    skies: Vec<[LinearSky; 8]>,
-    suns: Vec<CurvedSun>,
-    frames: Vec<FrameLanes>,
-    slants: Vec<Slant>,
-}
-
-impl CurvedLights {
-    /// Some of a scene's lights on pairs of a block.
-    pub(super) fn new(
-        (scene, skies): (&Scene, &Skies),
-        swept: Swept,
-        block: &QuadBlock,
-        pairs: Range<usize>,
-    ) -> Self {
-        let discs = scene.lights.iter().enumerate().filter_map(|(i, light)| match *light {
-            Light::Sun { to_light, intensity, angular_size } if swept.suns >> i & 1 == 1 => {
-                Some((Disc::new(to_light.normalize_or_zero(), angular_size), intensity))
-            }
-            _ => None,
-        });
-        let discs: Vec<(Disc, Vec3)> = discs.collect();
-        let sun = |(disc, intensity): &(Disc, Vec3)| CurvedSun {
-            intensity: *intensity,
-            radius: disc.radius,
-        };
-        let suns = discs.iter().map(sun).collect();
-        let (frames, slants, of_pairs) = Default::default();
-        let mut all = Self { skies: of_pairs, suns, frames, slants };
-        for pair in pairs.map(|index| block.pair(index)) {
-            let Some(LitLanes { position, normal, tangent_u, tangent_v }) = pair.lit() else {
-                continue;
-            };
-            let frame =
-                FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
-            all.slants.extend(discs.iter().map(|(disc, _)| frame.slant(disc.to_middle)));
-            if swept.has_sky {
-                all.skies.push(skies.of_pair(scene, &pair, &frame));
-            }
-            all.frames.push(frame);
-        }
-        all
-    }
-
-    /// All of them.
-    pub(super) fn all(&self) -> Curved<'_> {
-        let Self { skies, suns, frames, slants } = self;
-        Curved { suns, skies, frames, slants }
     }
 }

@@ -9,6 +9,7 @@
 
 mod baked;
 mod curved;
+mod curved_lights;
 mod curved_shadows;
 mod exact;
 mod ground;

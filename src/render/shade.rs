@@ -1,6 +1,6 @@
 //! The colours of a block of quads: footprints, filter, light.
 
-use super::curved::CurvedLights;
+use super::curved_lights::CurvedLights;
 use super::exact::Exact;
 use super::ground::{Ground, in_lanes, pixel_center, surface_point};
 use super::prepared::PreparedScene;

@@ -5,7 +5,7 @@
 //! polygon's point that it is seen over.
 
 use super::pixels::PixelOnLines;
-use crate::light::{Curved, LinearSky, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE, Slant};
+use crate::light::{Curved, CurvedSun, LinearSky, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE, Slant};
 use crate::relief::directions::diamond_angle;
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, u32x16};
 use crate::texture::Rows;
@@ -75,6 +75,59 @@ struct PatchSun {
 /// Least part of a height over which a sun rises: two steps of a byte.
 const LEAST_WIDTH: f32 = 1.0 / 128.0;
 
+impl PatchSun {
+    fn new(curved: &Curved, sun: usize, picks: &[u8], fit: &Fit) -> Self {
+        let at = |pick: &u8| (curved.slant(usize::from(pick / 8), sun), usize::from(pick % 8));
+        let of = |of: &dyn Fn(&Slant, usize) -> f32| {
+            fit.linear(picks.iter().map(|pick| {
+                let (slant, lane) = at(pick);
+                of(slant, lane)
+            }))
+        };
+        let along = |slant: &Slant, lane: usize| slant.along.map(|c| c.as_array()[lane]);
+        let [x, y] = picks.iter().fold([0.0_f32; 2], |[x, y], pick| {
+            let (slant, lane) = at(pick);
+            let [dx, dy] = along(slant, lane);
+            [x + dx, y + dy]
+        });
+        let first = azimuth(x, y).floor();
+        let part = of(&|slant, lane| {
+            let [x, y] = along(slant, lane);
+            // The nearer way round.
+            let (part, half) = (azimuth(x, y) - first, NUM_AZIMUTHS as f32 * 0.5);
+            part - if part > half {
+                2.0 * half
+            } else if part < -half {
+                -2.0 * half
+            } else {
+                0.0
+            }
+        });
+        let azimuths = [0, 1].map(|next| {
+            let azimuth = (first as usize + next) % NUM_AZIMUTHS;
+            (azimuth / 4, (azimuth % 4 * 8) as u32)
+        });
+        let height = of(&|slant, lane| slant.height.as_array()[lane]);
+        let c = height.middle.clamp(0.0, 1.0);
+        let CurvedSun { intensity, radius } = curved.suns[sun];
+        // Of the elevation e, dc/de = 1 / (cos + sin)^2 = c^2 + (1 - c)^2.
+        let width = 2.0 * radius * (c * c + (1.0 - c) * (1.0 - c));
+        Self {
+            intensity: intensity.to_array(),
+            to_light: [0, 1, 2].map(|c| of(&|slant, lane| slant.to_light[c].as_array()[lane])),
+            height,
+            inverse_width: 1.0 / width.max(LEAST_WIDTH),
+            azimuths,
+            part,
+        }
+    }
+}
+
+/// Where a direction along the texture lies among the azimuths.
+fn azimuth(x: f32, y: f32) -> f32 {
+    diamond_angle(x, y) * (NUM_AZIMUTHS as f32 * 0.25)
+}
+
 impl<'a> PatchLight<'a> {
     /// The lights of picked pixels, which lie so on the lines of a patch.
     pub(super) fn new(
@@ -84,55 +137,8 @@ impl<'a> PatchLight<'a> {
         pixels: &[PixelOnLines],
     ) -> Self {
         let fit = Fit::new(pixels);
-        let suns = curved.suns.iter().enumerate().map(|(i, sun)| {
-            let slant = |pick: u8| (curved.slant(usize::from(pick / 8), i), usize::from(pick % 8));
-            let of = |of: &dyn Fn(&Slant, usize) -> f32| {
-                fit.linear(picks.iter().map(|pick| {
-                    let (slant, lane) = slant(*pick);
-                    of(slant, lane)
-                }))
-            };
-            let to_light = [0, 1, 2].map(|c| of(&|slant, lane| slant.to_light[c].as_array()[lane]));
-            let height = of(&|slant, lane| slant.height.as_array()[lane]);
-            let along = |slant: &Slant, lane: usize| slant.along.map(|c| c.as_array()[lane]);
-            let mut sum = [0.0_f32; 2];
-            for pick in picks {
-                let (slant, lane) = slant(*pick);
-                let [x, y] = along(slant, lane);
-                sum = [sum[0] + x, sum[1] + y];
-            }
-            let per_azimuth = NUM_AZIMUTHS as f32 * 0.25;
-            let first = (diamond_angle(sum[0], sum[1]) * per_azimuth).floor();
-            let part = of(&|slant, lane| {
-                let [x, y] = along(slant, lane);
-                let part = diamond_angle(x, y) * per_azimuth - first;
-                let half = NUM_AZIMUTHS as f32 * 0.5;
-                if part > half {
-                    part - 2.0 * half
-                } else if part < -half {
-                    part + 2.0 * half
-                } else {
-                    part
-                }
-            });
-            let azimuths = [0, 1].map(|next| {
-                let azimuth = (first as usize + next) % NUM_AZIMUTHS;
-                (azimuth / 4, (azimuth % 4 * 8) as u32)
-            });
-            let c = height.middle.clamp(0.0, 1.0);
-            // dc/de = 1 / (cos + sin)^2 = c^2 + (1 - c)^2.
-            let width = 2.0 * sun.radius * (c * c + (1.0 - c) * (1.0 - c));
-            let inverse_width = 1.0 / width.max(LEAST_WIDTH);
-            PatchSun {
-                intensity: sun.intensity.to_array(),
-                to_light,
-                height,
-                inverse_width,
-                azimuths,
-                part,
-            }
-        });
-        let suns = suns.collect();
+        let sun = |sun: usize| PatchSun::new(curved, sun, picks, &fit);
+        let suns = (0..curved.suns.len()).map(sun).collect();
         let sky = (!curved.skies.is_empty()).then(|| PatchSky::new(curved, picks, &fit));
         Self { rows, middle: fit.middle, suns, sky }
     }
