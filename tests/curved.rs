@@ -70,6 +70,7 @@ fn torus(maps: SurfaceMaps, lights: &[Light], sky: Vec3) -> Scene {
             up: Vec3::Y,
             fov_degrees: 60.0,
             near: 0.01,
+            ..Camera::default()
         },
         lights: lights.to_vec(),
         sky: Sky::Color(sky),

@@ -14,16 +14,16 @@ const FILLED: f32 = 0.92;
 pub enum PoseAxes {
     /// x to the right, y down, z forward.
     OpenCv,
-    /// x to the right, y up, z backward (Blender, NeRF).
+    /// x to the right, y up, z backward (Blender, `NeRF`).
     OpenGl,
 }
 
-/// What a camera makes of a point at `(x, y, z)` to the right, down and forward: the place `(fx x / z
-/// + cx, fy y / z + cy)` on the frame, in pixels.
+/// What a camera makes of a point at `(x, y, z)` to the right, down and forward: the place on the
+/// frame `(fx x / z + cx, fy y / z + cy)`, in pixels.
 ///
 /// The frame's upper left corner is at `(0, 0)`, and its first pixel's centre, through which that
 /// pixel's ray goes, at `(0.5, 0.5)`. Where a calibration counts from the centre of the first pixel,
-/// as OpenCV's does, add 0.5 to its `cx` and `cy`.
+/// as that of `OpenCV` does, add 0.5 to its `cx` and `cy`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intrinsics {
     /// Focal length across in pixels, 1e-3 to 1e6.
