@@ -17,7 +17,14 @@ use std::sync::Arc;
 
 /// A camera for which the clip coordinates (x, y, w) are the world's (x, y, -w) in a square frame.
 fn clip_camera() -> Camera {
-    Camera { eye: Vec3::ZERO, target: -Vec3::Z, up: Vec3::Y, fov_degrees: 90.0, near: 1e-3 }
+    Camera {
+        eye: Vec3::ZERO,
+        target: -Vec3::Z,
+        up: Vec3::Y,
+        fov_degrees: 90.0,
+        near: 1e-3,
+        ..Camera::default()
+    }
 }
 
 fn square(side: u32) -> Settings {

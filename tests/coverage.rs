@@ -36,7 +36,7 @@ fn scene_of(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Scene {
             target: -Vec3::Z,
             up: Vec3::Y,
             fov_degrees: 90.0,
-            near: 0.01,
+            ..Camera::default()
         },
         ..Scene::default()
     }

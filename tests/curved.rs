@@ -70,11 +70,11 @@ fn torus(maps: SurfaceMaps, lights: &[Light], sky: Vec3) -> Scene {
             up: Vec3::Y,
             fov_degrees: 60.0,
             near: 0.01,
+            ..Camera::default()
         },
         lights: lights.to_vec(),
         sky: Sky::Color(sky),
         background: [0.0; 4],
-        ..Scene::default()
     }
 }
 
@@ -178,8 +178,8 @@ fn a_flat_surface_has_the_horizon_of_none() {
 fn horizons_say_what_sweeps_along_the_light_say() {
     let surface = Surface::new(cobbles(64, 4)).expect("valid maps");
     let horizons = Horizons::new(&surface);
-    for (azimuth, [x, y]) in [(0, [1.0, 0.0]), (6, [-0.5, 0.5]), (12, [0.0, -1.0])] {
-        let length = ((x * x + y * y) as f32).sqrt();
+    for (azimuth, [x, y]) in [(0, [1.0_f32, 0.0]), (6, [-0.5, 0.5]), (12, [0.0, -1.0])] {
+        let length = (x * x + y * y).sqrt();
         for height in [0.15_f32, 0.3, 0.5] {
             let reach = -surface.relief_depth() * (1.0 - height) / height / length;
             let parts =

@@ -45,6 +45,7 @@ fn random_scene(random: &mut Random) -> Scene {
             up: Vec3::Y,
             fov_degrees: random.within(20.0, 100.0),
             near: 0.01,
+            ..Camera::default()
         },
         ..Scene::default()
     }

@@ -309,7 +309,7 @@ fn views_of_geometry_are_right_on_a_floor() {
         (of(View::Normal), of(View::Depth), of(View::Uv), of(View::Coverage));
     let camera = scene.camera;
     let [right, up, forward] = camera.axes();
-    let focal = camera.focal_pixels(36);
+    let focal = camera.on_frame(64, 36).fx;
     let mut num = 0;
     for i in (0..64 * 36).filter(|&i| depth[i].is_some()) {
         let [x, y] = [(i % 64) as f32 + 0.5 - 32.0, (i / 64) as f32 + 0.5 - 18.0];

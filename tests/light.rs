@@ -45,6 +45,7 @@ fn table(material: Material) -> Scene {
             // 2 atan(1 / 10), so that the square fills the picture.
             fov_degrees: 11.421_186,
             near: 0.1,
+            ..Camera::default()
         },
         ..Scene::default()
     }

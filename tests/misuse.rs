@@ -253,6 +253,7 @@ fn scene() -> impl Strategy<Value = Scene> {
             up,
             fov_degrees,
             near,
+            ..Camera::default()
         });
     let background = prop_oneof![5 => Just([0.5; 4]), 1 => prop::array::uniform4(number())];
     (

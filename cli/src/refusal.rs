@@ -41,9 +41,9 @@ impl From<Error> for Refusal {
     fn from(error: Error) -> Self {
         match error {
             Error::Setting { name, reason } => Self(format!("{}: {reason}", option_of(name))),
-            Error::Scene { part, reason } if part == "camera" => {
-                Self(format!("the camera (--eye, --target, --up, --fov, --near): {reason}"))
-            }
+            Error::Scene { part, reason } if part == "camera" => Self(format!(
+                "the camera (--eye, --target, --up, --fov, --intrinsics, --pose, --near): {reason}"
+            )),
             Error::Limit { option, .. } => {
                 let text = error.to_string();
                 let reason = text.strip_suffix(&format!("({option})")).unwrap_or(&text);

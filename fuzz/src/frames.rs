@@ -6,7 +6,9 @@ use arbitrary::Arbitrary;
 use basrelief::invariants::{
     fan_is_hit_once, frame_is_finite, layers_agree, lights_add, no_more_than_the_sky,
 };
-use basrelief::{Camera, Filter, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky};
+use basrelief::{
+    Camera, Filter, Intrinsics, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky,
+};
 use basrelief_cli::{Cli, Ending};
 use glam::{Vec2, Vec3};
 use std::ffi::OsString;
@@ -74,8 +76,10 @@ pub fn render(bytes: &[u8]) {
 /// Small scenes of any triangles, seen from anywhere: what their layers say agrees.
 pub fn layers(bytes: &[u8]) {
     type Corner = ([Number; 3], [Number; 2]);
-    type Drawn = (Input, Vec<Corner>, [[Number; 3]; 3], [Number; 2], u8);
-    check(bytes, |(texture, mut corners, [eye, target, up], [fov, near], options): Drawn| {
+    type Drawn = (Input, Vec<Corner>, [[Number; 3]; 3], [[Number; 2]; 3], u8);
+    check(bytes, |(texture, mut corners, [eye, target, up], numbers, options): Drawn| {
+        let [[fov, near], [fx, fy], [cx, cy]] = numbers;
+        let lens = [fx, fy, cx, cy].map(Number::get);
         corners.truncate(48);
         let vector = |v: [Number; 3]| Vec3::from(v.map(Number::get));
         let positions = corners.iter().map(|corner| vector(corner.0)).collect();
@@ -94,6 +98,12 @@ pub fn layers(bytes: &[u8]) {
                 up: vector(up),
                 fov_degrees: 60.0 + 30.0 * fov.get(),
                 near: near.get().abs(),
+                intrinsics: (options & 16 != 0).then_some(Intrinsics {
+                    fx: lens[0],
+                    fy: lens[1],
+                    cx: lens[2],
+                    cy: lens[3],
+                }),
             },
             ..Scene::default()
         };

@@ -54,13 +54,14 @@ pub(super) fn clip(triangle: [Point; 3], projection: &Projection) -> Option<Poly
 
 /// Whether all corners lie on the outer side of one of the frame's borders or of the near plane.
 fn is_out_of_frame(triangle: &[Point; 3], projection: &Projection) -> bool {
-    let [cx, cy] = projection.center;
+    let [left, above] = projection.center;
+    let (right, below) = (f64::from(projection.width) - left, f64::from(projection.height) - above);
     let all = |distance: &dyn Fn(&Point) -> f64| triangle.iter().all(|p| distance(p) < 0.0);
     all(&|p| p[2] - f64::from(projection.near))
-        || all(&|p| cx * p[2] - p[0])
-        || all(&|p| cx * p[2] + p[0])
-        || all(&|p| cy * p[2] - p[1])
-        || all(&|p| cy * p[2] + p[1])
+        || all(&|p| right * p[2] - p[0])
+        || all(&|p| left * p[2] + p[0])
+        || all(&|p| below * p[2] - p[1])
+        || all(&|p| above * p[2] + p[1])
 }
 
 fn cut(polygon: &Polygon, distance: impl Fn(&Point) -> f64) -> Polygon {

@@ -1,11 +1,11 @@
 //! World space to view space to the snapped screen.
 //!
-//! `x = focal (P - eye).right`, `y = -focal (P - eye).up`, `w = (P - eye).forward`; on the screen,
-//! in pixels from the upper left corner, `(x / w + width / 2, y / w + height / 2)`. Divided and
+//! `x = fx (P - eye).right`, `y = -fy (P - eye).up`, `w = (P - eye).forward`; on the screen, in
+//! pixels from the upper left corner, `(x / w + cx, y / w + cy)`; `(cx, cy)` is the optical axis. Divided and
 //! snapped in f64: f32 would lose sub-pixel bits beyond 32768 pixels, where guard-band vertices
 //! lie.
 
-use crate::scene::Camera;
+use crate::scene::{Camera, Intrinsics};
 use crate::settings::Settings;
 use crate::simd::{f32x8, f64x8};
 use glam::{DMat3, DVec3, Vec3};
@@ -42,7 +42,7 @@ pub struct Projection {
     focal: [f64; 2],
     /// Right, down and forward, each of length one.
     unit_axes: DMat3,
-    /// The frame's middle in pixels from its upper left corner.
+    /// The optical axis in pixels from the frame's upper left corner.
     pub center: [f64; 2],
     /// Distance along the view before which nothing is drawn, in world units.
     pub near: f32,
@@ -55,14 +55,14 @@ pub struct Projection {
 impl Projection {
     /// The projection of `camera` on the frame of `settings`.
     pub fn new(camera: &Camera, settings: &Settings) -> Self {
-        let focal = camera.focal_pixels(settings.height);
+        let Intrinsics { fx, fy, cx, cy } = camera.on_frame(settings.width, settings.height);
         let [right, up, forward] = camera.axes();
         Self {
             eye: camera.eye,
-            axes: [right * focal, up * -focal, forward],
-            focal: [f64::from(focal); 2],
+            axes: [right * fx, up * -fy, forward],
+            focal: [fx, fy].map(f64::from),
             unit_axes: DMat3::from_cols(right.as_dvec3(), -up.as_dvec3(), forward.as_dvec3()),
-            center: [f64::from(settings.width) * 0.5, f64::from(settings.height) * 0.5],
+            center: [cx, cy].map(f64::from),
             near: camera.near,
             width: settings.width,
             height: settings.height,

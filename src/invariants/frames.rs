@@ -84,7 +84,7 @@ pub fn fan_is_hit_once(center: [f32; 2], ring: &[f32; 8], tilt: [f32; 2], msaa: 
             target: -Vec3::Z,
             up: Vec3::Y,
             fov_degrees: 90.0,
-            near: 0.01,
+            ..Camera::default()
         },
         ..Scene::default()
     };

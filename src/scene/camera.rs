@@ -9,6 +9,44 @@ const ELEVATION: [f32; 2] = [0.258_819_04, 0.965_925_8];
 /// How much of a picture [`Camera::framing`] fills at most, each way.
 const FILLED: f32 = 0.92;
 
+/// The axes of a camera in a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PoseAxes {
+    /// x to the right, y down, z forward.
+    OpenCv,
+    /// x to the right, y up, z backward (Blender, `NeRF`).
+    OpenGl,
+}
+
+/// What a camera makes of a point at `(x, y, z)` to the right, down and forward: the place on the
+/// frame `(fx x / z + cx, fy y / z + cy)`, in pixels.
+///
+/// The frame's upper left corner is at `(0, 0)`, and its first pixel's centre, through which that
+/// pixel's ray goes, at `(0.5, 0.5)`. Where a calibration counts from the centre of the first pixel,
+/// as that of `OpenCV` does, add 0.5 to its `cx` and `cy`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intrinsics {
+    /// Focal length across in pixels, 1e-3 to 1e6.
+    pub fx: f32,
+    /// Focal length down in pixels, 1e-3 to 1e6.
+    pub fy: f32,
+    /// Column of the optical axis in pixels, -32768 to 65536.
+    pub cx: f32,
+    /// Row of the optical axis in pixels, -32768 to 65536.
+    pub cy: f32,
+}
+
+impl Intrinsics {
+    /// So far may the optical axis be from a frame's corner: the frame then lies within the guard
+    /// band around it.
+    const CENTER: std::ops::RangeInclusive<f32> = -32768.0..=65536.0;
+
+    fn is_valid(&self) -> bool {
+        [self.fx, self.fy].iter().all(|f| (1e-3..=1e6).contains(f))
+            && [self.cx, self.cy].iter().all(|c| Self::CENTER.contains(c))
+    }
+}
+
 /// A pinhole camera. World space is right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -20,6 +58,9 @@ pub struct Camera {
     pub up: Vec3,
     /// Vertical field of view in degrees, above 0 and below 180. Default: 60.
     pub fov_degrees: f32,
+    /// Focal lengths and optical axis on the whole frame in pixels, in place of the field of view.
+    /// Default: `None`, square pixels and the axis in the frame's middle.
+    pub intrinsics: Option<Intrinsics>,
     /// Distance along the view, in world units, before which nothing is drawn. Default: 0.01.
     pub near: f32,
 }
@@ -31,6 +72,7 @@ impl Default for Camera {
             target: Vec3::ZERO,
             up: Vec3::Y,
             fov_degrees: 60.0,
+            intrinsics: None,
             near: 0.01,
         }
     }
@@ -65,10 +107,52 @@ impl Camera {
         [right, right.cross(forward), forward]
     }
 
-    /// Pixels per unit of `x / w` and `y / w`, where `w` is the distance along the view, for a
-    /// frame `height` pixels high (pixels are square).
-    pub fn focal_pixels(&self, height: u32) -> f32 {
-        (f64::from(height) * 0.5 / self.tan_half_fov()) as f32
+    /// A camera from its pose, the matrix from the camera's axes to the world, row by row: its
+    /// columns are the axes and the eye. `near` is the default's.
+    ///
+    /// # Errors
+    /// Says so where the axes are not of length one, at right angles and right-handed, within 1e-3,
+    /// or where the camera is not valid.
+    pub fn from_pose(pose: &[[f32; 4]; 4], axes: PoseAxes, intrinsics: Intrinsics) -> Result<Self> {
+        let intrinsics = Some(intrinsics);
+        let camera = Self { intrinsics, ..Self::default() }.posed(pose, axes)?;
+        camera.validate().map(|()| camera)
+    }
+
+    /// The camera in another [pose](Self::from_pose).
+    ///
+    /// # Errors
+    /// As [`Self::from_pose`].
+    pub fn posed(self, pose: &[[f32; 4]; 4], axes: PoseAxes) -> Result<Self> {
+        let refuse = |reason: &str| Err(Error::scene("camera", reason));
+        let [x, y, z, eye] =
+            [0, 1, 2, 3].map(|column| Vec3::from([0, 1, 2].map(|row| pose[row][column])));
+        if pose[3] != [0.0, 0.0, 0.0, 1.0] || !eye.is_finite() {
+            return refuse("the pose's last row must be 0, 0, 0, 1, and its place finite");
+        }
+        let is_near = |a: f32, b: f32| (a - b).abs() <= 1e-3;
+        let are_unit = [x, y, z].iter().all(|axis| is_near(axis.length(), 1.0));
+        // The third axis of a right-handed frame: compared, which finds out angles as well.
+        let is_right = [0, 1, 2].iter().all(|&i| is_near(x.cross(y)[i], z[i]));
+        if !are_unit || !is_right || !is_near(x.dot(y), 0.0) {
+            return refuse("the pose's axes must be a rotation: of length one and right-handed");
+        }
+        let (up, forward) = match axes {
+            PoseAxes::OpenCv => (-y, z),
+            PoseAxes::OpenGl => (y, -z),
+        };
+        // As far from the eye as that from the origin: nearer, rounding would turn the view.
+        let target = eye + forward * eye.abs().max_element().max(1.0);
+        Ok(Self { eye, target, up, ..self })
+    }
+
+    /// Focal lengths and optical axis on a frame of so many pixels.
+    pub fn on_frame(&self, width: u32, height: u32) -> Intrinsics {
+        self.intrinsics.unwrap_or_else(|| {
+            let focal = (f64::from(height) * 0.5 / self.tan_half_fov()) as f32;
+            let [cx, cy] = [width, height].map(|side| side as f32 * 0.5);
+            Intrinsics { fx: focal, fy: focal, cx, cy }
+        })
     }
 
     fn tan_half_fov(&self) -> f64 {
@@ -86,6 +170,11 @@ impl Camera {
         }
         if !(self.fov_degrees > 0.0 && self.fov_degrees < 180.0) {
             return refuse("the field of view must be above 0 and below 180 degrees");
+        }
+        if self.intrinsics.is_some_and(|intrinsics| !intrinsics.is_valid()) {
+            return refuse(
+                "focal lengths must be within 1e-3 to 1e6 pixels, the axis within -32768 to 65536",
+            );
         }
         if !(self.near > 0.0 && self.near.is_finite()) {
             return refuse("near must be above 0");

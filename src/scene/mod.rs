@@ -11,7 +11,7 @@ mod sky;
 mod whole;
 
 pub use builtin::builtin;
-pub use camera::Camera;
+pub use camera::{Camera, Intrinsics, PoseAxes};
 pub use light::Light;
 pub use material::Material;
 pub use mesh::Mesh;

@@ -61,8 +61,7 @@ pub fn floor_scene(surface: Surface, repeats: f32) -> Scene {
             eye: Vec3::new(0.0, 1.6, 6.0),
             target: Vec3::new(0.0, 0.6, 0.0),
             up: Vec3::Y,
-            fov_degrees: 60.0,
-            near: 0.01,
+            ..Camera::default()
         },
         ..Scene::default()
     }

@@ -95,7 +95,7 @@ impl CameraPath {
         });
         let keys: Vec<(f64, Place)> = at_keys.collect();
         let slopes = (0..keys.len()).map(|i| slope(&keys, i)).collect();
-        Places { keys, slopes, near: start.near }
+        Places { keys, slopes, start: *start }
     }
 }
 
@@ -103,7 +103,8 @@ impl CameraPath {
 pub(crate) struct Places {
     keys: Vec<(f64, Place)>,
     slopes: Vec<Place>,
-    near: f32,
+    /// What stays as it is.
+    start: Camera,
 }
 
 impl Places {
@@ -117,7 +118,7 @@ impl Places {
             None => self.keys[0].1,
         };
         let [eye, target, up, fov] = [eye, target, up, fov].map(|v| v.as_vec3());
-        Camera { eye, target, up, fov_degrees: fov.x, near: self.near }
+        Camera { eye, target, up, fov_degrees: fov.x, ..self.start }
     }
 
     /// The cubic Hermite curve from key `i` to the next.

@@ -2,7 +2,7 @@
 
 use basrelief::load::{HeightSense, NormalY};
 use basrelief::texture::Wrap;
-use basrelief::{Derivatives, Filter, Formulas, Lighting, Tone, Visibility};
+use basrelief::{Derivatives, Filter, Formulas, Lighting, PoseAxes, Tone, Visibility};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use serde::de::Error;
@@ -84,6 +84,11 @@ pub(crate) const WRAPS: &[Choice<Wrap>] = &[
     ("repeat", Wrap::Repeat, "The texture again"),
     ("mirror", Wrap::Mirror, "The texture mirrored, then again"),
     ("clamp", Wrap::Clamp, "The texels of the edge"),
+];
+
+pub(crate) const POSE_AXES: &[Choice<PoseAxes>] = &[
+    ("opencv", PoseAxes::OpenCv, "x to the right, y down, z forward"),
+    ("opengl", PoseAxes::OpenGl, "x to the right, y up, z backward: Blender, NeRF"),
 ];
 
 pub(crate) const ON_OFF: &[Choice<bool>] = &[("on", true, ""), ("off", false, "")];

@@ -23,6 +23,7 @@ checked! {
     above_zero: f32, check::above_zero;
     crease_angle: f32, check::crease_angle;
     field_of_view: f32, check::field_of_view;
+    intrinsics: [f32; 4], check::intrinsics;
     turn: f32, check::turn;
     unit: f32, check::unit;
     direction: Vec3, check::direction;

@@ -5,14 +5,14 @@
 use crate::options::choices::{self, ON_OFF, one_of};
 use crate::options::file_values::{self, PointLight, Spelt, Sun};
 use crate::options::settings::Look;
-use crate::options::values;
+use crate::options::values::{self, Pose};
 use crate::progress::Progress;
 use crate::refusal::Refusal;
 use basrelief::load::{
     self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY,
 };
 use basrelief::texture::Wrap;
-use basrelief::{Camera, Light, Scene, Settings, Sky, Tone, scene};
+use basrelief::{Camera, Intrinsics, Light, PoseAxes, Scene, Settings, Sky, Tone, scene};
 use clap::Args;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -138,6 +138,20 @@ pub(crate) struct CameraOptions {
     #[arg(long, value_name = "DEG", value_parser = values::field_of_view, allow_hyphen_values = true)]
     #[serde(deserialize_with = "file_values::field_of_view")]
     fov: Option<f32>,
+    /// Focal lengths and optical axis in pixels of the whole frame, whose first pixel has its centre
+    /// at 0.5,0.5; in place of --fov
+    #[arg(long, value_name = "FX,FY,CX,CY", value_parser = values::intrinsics, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "file_values::intrinsics")]
+    intrinsics: Option<[f32; 4]>,
+    /// Where the camera is and how it lies: the 4x4 matrix from its axes to the world, 16 numbers
+    /// row by row; in place of --eye, --target and --up
+    #[arg(long, value_name = "M11,M12,...,M44", value_parser = values::pose, allow_hyphen_values = true, conflicts_with_all = ["eye", "target", "up"])]
+    #[serde(skip)]
+    pose: Option<Pose>,
+    /// The axes of --pose [default: opencv]
+    #[arg(long, value_name = "WHOSE", value_parser = one_of(choices::POSE_AXES), requires = "pose")]
+    #[serde(skip)]
+    pose_axes: Option<PoseAxes>,
     /// Distance from the eye before which nothing is drawn, in the scene's units
     #[arg(long, value_name = "D", value_parser = values::above_zero, allow_hyphen_values = true)]
     #[serde(deserialize_with = "file_values::above_zero")]
@@ -292,12 +306,16 @@ fn built_in() -> Loaded {
 impl From<&Camera> for CameraOptions {
     /// Options that give all of `camera`.
     fn from(camera: &Camera) -> Self {
-        let Camera { eye, target, up, fov_degrees, near } = *camera;
+        let Camera { eye, target, up, fov_degrees, intrinsics, near } = *camera;
         Self {
             eye: Some(eye),
             target: Some(target),
             up: Some(up),
             fov: Some(fov_degrees),
+            intrinsics: intrinsics.map(|Intrinsics { fx, fy, cx, cy }| [fx, fy, cx, cy]),
+            // The eye, target and up say the same.
+            pose: None,
+            pose_axes: None,
             near: Some(near),
         }
     }
@@ -310,6 +328,15 @@ impl CameraOptions {
         camera.up = self.up.unwrap_or(camera.up);
         camera.fov_degrees = self.fov.unwrap_or(camera.fov_degrees);
         camera.near = self.near.unwrap_or(camera.near);
+        if let Some([fx, fy, cx, cy]) = self.intrinsics {
+            camera.intrinsics = Some(Intrinsics { fx, fy, cx, cy });
+        }
+        if let Some(pose) = &self.pose {
+            let axes = self.pose_axes.unwrap_or(PoseAxes::OpenCv);
+            // The option's parser refused what is no pose, whatever the axes.
+            *camera = camera.posed(pose, axes).unwrap_or(*camera);
+            return;
+        }
         let is_vertical =
             (camera.target - camera.eye).normalize_or_zero().cross(camera.up).length() < 1e-4;
         if is_vertical && self.up.is_none() {

@@ -7,7 +7,7 @@
 //! relief-depth = 0.04
 //! [material.brick]                # the same keys for the material of that name
 //! height = "brick_height.png"
-//! [camera]                        # --eye, --target, --up, --fov, --near
+//! [camera]                        # --eye, --target, --up, --fov, --intrinsics, --near
 //! eye = [3.0, 2.0, 5.0]
 //! [light]                         # --sky, --background, and lights
 //! background = "skyblue"

@@ -2,7 +2,7 @@
 //! expected. Scene files hold the same values, bounded by the same checks: see `file_values`.
 
 use basrelief::texture::linear_from_srgb8;
-use basrelief::{Horizon, Light, Region};
+use basrelief::{Camera, Error, Horizon, Light, PoseAxes, Region};
 use glam::Vec3;
 
 /// Width and height in pixels from `1280x720`.
@@ -105,6 +105,26 @@ pub(crate) fn vector(text: &str) -> Result<Vec3, String> {
     }
 }
 
+/// Focal lengths and optical axis `FX,FY,CX,CY`.
+pub(crate) fn intrinsics(text: &str) -> Result<[f32; 4], String> {
+    let four = <[f32; 4]>::try_from(numbers(text)?);
+    check::intrinsics(four.map_err(|_| "is not four numbers FX,FY,CX,CY")?)
+}
+
+/// A matrix from a camera's axes to the world, row by row.
+pub(crate) type Pose = [[f32; 4]; 4];
+
+/// A pose: 16 numbers, row by row.
+pub(crate) fn pose(text: &str) -> Result<Pose, String> {
+    let pose = <[f32; 16]>::try_from(numbers(text)?).map_err(|_| "is not 16 numbers")?;
+    let pose = [0, 4, 8, 12].map(|i| [pose[i], pose[i + 1], pose[i + 2], pose[i + 3]]);
+    // Both kinds of axes are a rotation if one is.
+    Camera::default().posed(&pose, PoseAxes::OpenCv).map(|_| pose).map_err(|e| match e {
+        Error::Scene { reason, .. } => reason,
+        e => e.to_string(),
+    })
+}
+
 /// A direction `X,Y,Z` that is not zero.
 pub(crate) fn direction(text: &str) -> Result<Vec3, String> {
     check::direction(vector(text)?)
@@ -158,7 +178,20 @@ pub(crate) fn sky(text: &str) -> Result<[Vec3; 3], String> {
 
 /// Ranges of values, wherever they come from.
 pub(crate) mod check {
+    use basrelief::{Camera, Intrinsics};
     use glam::Vec3;
+
+    pub(crate) fn intrinsics(value: [f32; 4]) -> Result<[f32; 4], String> {
+        let [fx, fy, cx, cy] = value;
+        let intrinsics = Some(Intrinsics { fx, fy, cx, cy });
+        match (Camera { intrinsics, ..Camera::default() }).validate() {
+            Ok(()) => Ok(value),
+            Err(_) => {
+                Err("must have focal lengths of 1e-3 to 1e6, and the axis within -32768 to 65536"
+                    .into())
+            }
+        }
+    }
 
     pub(crate) fn number(value: f32) -> Result<f32, String> {
         // Squares of larger numbers leave the range of f32.

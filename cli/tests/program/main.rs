@@ -1,6 +1,7 @@
 //! Runs the program as its users do: one test program for all, so that it is linked once.
 
 mod bench;
+mod cameras;
 mod chromium;
 mod command_line;
 mod folder;
