@@ -102,7 +102,7 @@ pub(super) mod tests {
             named(&trials, "horizon, 4 lines"),
             Filter::Horizon(Horizon { lines: 4, ..given })
         );
-        let ewa = Ewa { derivatives: Derivatives::Relief, max_anisotropy: 8.0, ..Ewa::default() };
+        let ewa = Ewa { lines: 7, max_anisotropy: 8.0, ..Ewa::default() };
         assert_eq!(named(&trials, "EWA (3)"), Filter::Ewa(ewa));
     }
 
