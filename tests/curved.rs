@@ -6,8 +6,8 @@ use basrelief::light::{Horizons, LinearSky};
 use basrelief::relief::{LitParts, RowScratch};
 use basrelief::texture::{ColorImage, Surface, SurfaceMaps, srgb_from_linear};
 use basrelief::{
-    Camera, Filter, Frame, Light, Lighting, Material, Mesh, Rays, Renderer, Scene, Settings, Sky,
-    render,
+    Camera, Filter, Frame, Light, Lighting, Material, Mesh, Rays, Region, Renderer, Scene,
+    Settings, Sky, render,
 };
 use common::cobbles;
 use glam::{Vec2, Vec3};
@@ -117,6 +117,17 @@ fn in_a_white_furnace_nothing_shines() {
     let seen = frame.pixels.iter().filter(|pixel| pixel[3] == 1.0);
     let most = seen.flat_map(|pixel| &pixel[..3]).fold(0.0_f32, |most, c| most.max(*c));
     assert!((0.9..1.02).contains(&most), "{most}");
+}
+
+/// Where two pixels of a patch all but share a place, at an edge of the built-in arch, slopes between
+/// their lights once made one many times as bright as white.
+#[test]
+fn no_pixel_at_an_edge_is_brighter_than_its_lights() {
+    let region = Some(Region { x: 340, y: 60, width: 16, height: 12 });
+    let settings = Settings { width: 640, height: 360, region, msaa: 4, ..lit(Filter::default()) };
+    let frame = render(basrelief::scene::builtin(), settings).expect("a valid scene");
+    let most = frame.pixels.iter().flat_map(|pixel| &pixel[..3]).fold(0.0_f32, |a, b| a.max(*b));
+    assert!((0.1..1.0).contains(&most), "{most}");
 }
 
 #[test]

@@ -178,7 +178,9 @@ impl<'a> PatchLight<'a> {
         let normal = [0, 1, 2].map(|i| signed(normals, i));
         for sun in &self.suns {
             let [l0, l1, l2] = sun.to_light.map(|l| l.at(xi, p));
-            let n_l = (normal[0] * l0 + normal[1] * l1 + normal[2] * l2).fast_max(LineLanes::ZERO);
+            let n_l = normal[0] * l0 + normal[1] * l1 + normal[2] * l2;
+            // No cosine is above 1, whatever the fit makes of places beyond its pixels.
+            let n_l = n_l.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
             let [(plane, shift), (next_plane, next_shift)] = sun.azimuths;
             let word = between.words_at(words, start + plane * stride);
             let next = if plane == next_plane {
@@ -205,6 +207,10 @@ impl Linear {
     }
 }
 
+/// How far pixels must lie apart for a slope to be told from them, in the squares of their ellipses'
+/// half axes: those of a picture's patch lie hundreds of times as far.
+const LEAST_SPREAD: f32 = 0.02;
+
 /// Least squares over the places of pixels.
 struct Fit<'a> {
     pixels: &'a [PixelOnLines],
@@ -223,9 +229,17 @@ impl<'a> Fit<'a> {
             let [x, q] = [p.xi - middle[0], p.q - middle[1]];
             moments = [moments[0] + x * x, moments[1] + x * q, moments[2] + q * q];
         }
-        // A little more on the diagonal leaves pixels in one line the least slope.
+        // A little more on the diagonal leaves pixels in one line the least slope, and those that all
+        // but share a place none: at an edge their lights may be far apart.
         let more = 1e-4 * (moments[0] + moments[2]);
-        let [xx, xq, qq] = [moments[0] + more, moments[1], moments[2] + more];
+        let size = |of: fn(&PixelOnLines) -> f32| {
+            pixels.iter().map(|p| of(p) * of(p)).sum::<f32>() * LEAST_SPREAD
+        };
+        let [xx, xq, qq] = [
+            moments[0] + more + size(|p| p.half_width),
+            moments[1],
+            moments[2] + more + size(|p| p.half_height),
+        ];
         let determinant = xx * qq - xq * xq;
         let inverse = if determinant > 0.0 {
             [qq / determinant, -xq / determinant, xx / determinant]
