@@ -96,7 +96,9 @@ fn draw(
     for settings in settings {
         renderer.set_settings(settings)?;
         let start = Instant::now();
-        drawn.frames.push(renderer.render());
+        let mut frame = renderer.render();
+        frame.apply_tone(renderer.settings().tone);
+        drawn.frames.push(frame);
         drawn.ms += start.elapsed().as_secs_f64() * 1e3;
     }
     Ok(drawn)

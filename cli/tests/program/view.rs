@@ -70,10 +70,17 @@ fn window_shows_the_scene_and_answers_keys_mouse_and_files() {
         |shot: &Shot| half(shot, false).iter().any(|p| p[2] > p[0] + 20) && shot.width == SIZE[0];
     let first = screen.wait_for(window, "the sky above the street", shows_street);
     let expected = {
-        let settings =
-            basrelief::Settings { width: 320, height: 180, ..basrelief::Settings::default() };
-        let settings = basrelief::Settings { filter: basrelief::Filter::Nearest, ..settings };
-        basrelief::render(basrelief::scene::builtin(), settings).unwrap().to_rgb8()
+        // As the built-in scene is drawn by default.
+        let settings = basrelief::Settings {
+            width: 320,
+            height: 180,
+            filter: basrelief::Filter::Nearest,
+            lighting: basrelief::Lighting::Lit,
+            ..basrelief::Settings::default()
+        };
+        let mut frame = basrelief::render(basrelief::scene::builtin(), settings).unwrap();
+        frame.apply_tone(basrelief::Tone::Neutral);
+        frame.to_rgb8()
     };
     let kept = 24 * 320..160 * 320;
     assert_eq!(first.pixels[kept.clone()], expected[kept], "the still window is what render draws");
