@@ -117,9 +117,6 @@ fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<
             Some(Hidden::new(&disc, triangles))
         })
         .collect::<Option<_>>()?;
-    if std::env::var("DBG").is_ok() {
-        eprintln!("L {}", suns[0].triangles.len());
-    }
     suns.iter().any(|sun| !sun.triangles.is_empty()).then_some(suns)
 }
 
