@@ -191,7 +191,8 @@ fn kernel(area: f32, texel_kernel: f32) -> f32 {
 }
 
 /// The levels for lines of texels along the longer axes of ellipses in base texels: as coarse as
-/// the shorter axes allow with so many `lines`, and so that at most so many texels lie along a line. The greatest `n` with `4^n` up to a size is half the exponent of a float.
+/// the shorter axes allow with so many `lines`, and so that at most so many texels lie along a line.
+/// The greatest `n` with `4^n` up to a size is half the exponent of a float.
 #[inline(always)]
 pub fn for_lines(ellipses: &Ellipses, lines: u32, most_along: f32, last: usize) -> i32x8 {
     let power_of_4 = |size: PixelLanes| ((mask(size) >> 23_i32) - 127) >> 1_i32;

@@ -4,6 +4,7 @@ use super::layer::Layer;
 use super::place::write_place;
 use super::values::{Band, Slot};
 use crate::geometry::Projection;
+use crate::light::unit_axes;
 use crate::raster::{CenterTile, LitLanes, QuadBlock, QuadPair};
 use crate::relief::{HeightField, ViewRays, displacement, finite, march_all, stretch};
 use crate::render::PreparedScene;
@@ -139,28 +140,27 @@ impl Hits<'_> {
         let ray = self.projection.ray(pixel.place.map(|c| f64::from(c) + 0.5)).as_vec3();
         let is_away = self.projection.along_axes(normal).dot(ray) > 0.0;
         let normal = if is_away { -normal } else { normal };
-        // Take off what interpolated tangents have along the normal.
-        let [u, v] = [at(&lit.tangent_u), at(&lit.tangent_v)]
-            .map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
+        let [u, v, _] = unit_axes([at(&lit.tangent_u), at(&lit.tangent_v)], normal);
         (u * x + v * y + normal * z).normalize_or(normal)
     }
 }
 
 /// Traces the rays of a block's pairs to the relief.
 fn trace(block: &QuadBlock, field: &HeightField, hits: &mut [PairHits]) {
-    let views: Vec<_> = block.pairs().map(|pair| (pair.view(), pair.covered_bits())).collect();
-    let rays = hits.iter().zip(&views).map(|(hits, (view, covered))| ViewRays {
+    let along = |pair: QuadPair| displacement(&pair.view(), field.relief_depth);
+    let along: Vec<_> = block.pairs().map(along).collect();
+    let rays = hits.iter().zip(&along).zip(block.pairs()).map(|((hits, along), pair)| ViewRays {
         base: hits.uv,
-        displacement: displacement(view, field.relief_depth),
-        wanted: *covered,
+        displacement: *along,
+        wanted: pair.covered_bits(),
     });
     let mut depths = vec![PixelLanes::ZERO; hits.len()];
     march_all(field, rays, &mut depths);
-    for ((hits, (view, _)), depth) in hits.iter_mut().zip(&views).zip(depths) {
-        let displacement = displacement(view, field.relief_depth);
-        hits.uv = [0, 1].map(|i| hits.uv[i] + displacement[i] * depth);
+    for (((hits, along), pair), depth) in hits.iter_mut().zip(along).zip(block.pairs()).zip(depths)
+    {
+        hits.uv = [0, 1].map(|i| hits.uv[i] + along[i] * depth);
         // At least 1, and so never before the polygon, by the rules of rounding.
-        hits.farther = PixelLanes::ONE + finite(stretch(view, field.relief_depth) * depth);
+        hits.farther = PixelLanes::ONE + finite(stretch(&pair.view(), field.relief_depth) * depth);
     }
 }
 

@@ -1,11 +1,10 @@
 //! Lights as eight pixels of a curved surface see them.
 
 use super::disc::spiral;
+use super::vectors::{Vectors, cross, dot, repeat_length};
+use crate::relief::finite;
 use crate::simd::PixelLanes;
 use glam::Vec3;
-
-/// Three coordinates of eight pixels.
-type Vectors = [PixelLanes; 3];
 
 /// The frame of a texture at eight pixels.
 #[derive(Clone, Copy, Debug)]
@@ -144,7 +143,7 @@ impl FrameLanes {
         // Cramer's rule, as for views: to_light = alpha U + beta V + up s N.
         let across = cross(&u, &v);
         let volume = dot(&normal, &across);
-        let up = dot(&across, &direction) / (dot(&across, &across).sqrt().sqrt() * volume);
+        let up = dot(&across, &direction) / (repeat_length(&across) * volume);
         let along = [cross(&v, &normal), cross(&normal, &u)].map(|w| dot(&w, &direction) / volume);
         let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
         Slant {
@@ -153,10 +152,6 @@ impl FrameLanes {
             along: along.map(finite),
         }
     }
-}
-
-fn finite(lanes: PixelLanes) -> PixelLanes {
-    lanes.is_finite().select(lanes, PixelLanes::ZERO)
 }
 
 impl LinearSky {
@@ -209,12 +204,4 @@ impl LinearSky {
 fn unit(v: &Vectors) -> Vectors {
     let length = dot(v, v).sqrt().max(PixelLanes::splat(1e-30));
     v.map(|c| c / length)
-}
-
-fn cross(a: &Vectors, b: &Vectors) -> Vectors {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: &Vectors, b: &Vectors) -> PixelLanes {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

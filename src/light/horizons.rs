@@ -102,7 +102,8 @@ fn byte(c: f32) -> u32 {
 }
 
 /// How many of the heights of light from an azimuth reach each texel: in rows along u, and in rows
-/// along v. Light of one azimuth is swept along the same rows at all heights, unless rounding decides.
+/// along v. Light of one azimuth is swept along the same rows at all heights, unless rounding
+/// decides.
 struct LitHeights {
     size: [usize; 2],
     sums: [Vec<f32>; 2],
@@ -148,10 +149,12 @@ fn direction(azimuth: usize) -> [f32; 2] {
     diamond_direction(azimuth as f32 * (4.0 / NUM_AZIMUTHS as f32))
 }
 
-/// Integrals over elevation above a horizon of an azimuth: of `cos^2`, `sin cos`, `cos^3`,
-/// `sin cos^2` and `sin^2 cos`, each times the cosine that a solid angle has... by byte.
+/// What a texel shows of the sky, azimuth by azimuth.
 struct SkySums {
+    /// The direction of each, and its share of all the way round.
     azimuths: [([f32; 2], f32); NUM_AZIMUTHS],
+    /// For each byte of a horizon the integrals above it, over the solid angle of all azimuths and
+    /// over pi, of the elevation's `cos`, `sin`, `cos^2`, `sin cos` and `sin^2`.
     above: Vec<[f32; 5]>,
 }
 

@@ -24,7 +24,7 @@ impl SurfacePoint {
 }
 
 /// Axes of unit length along u, along v and a unit normal.
-pub(super) fn unit_axes(tangents: [Vec3; 2], normal: Vec3) -> [Vec3; 3] {
+pub fn unit_axes(tangents: [Vec3; 2], normal: Vec3) -> [Vec3; 3] {
     // Take off what interpolated tangents have along the normal.
     let [u, v] = tangents.map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
     [u, v, normal]

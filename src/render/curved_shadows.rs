@@ -6,9 +6,9 @@
 
 use super::ground::Ground;
 use super::shade::Shader;
-use super::shadows::{Hidden, Places, Vectors, along, cross, dot, of_lane, places, steps};
-use crate::light::FrameLanes;
+use super::shadows::{Hidden, Places, along, half_width, of_lane, places, range, steps};
 use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
+use crate::light::{FrameLanes, Vectors, cross, repeat_length};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
 use crate::relief::displacement;
 use crate::scene::Scene;
@@ -100,8 +100,7 @@ impl ViewRays {
         let (normal, shown) = (frame.axes[2], frame.shown);
         let relief_depth = ground.prepared.surface().relief_depth();
         let moved = displacement(&pair.view(), relief_depth);
-        let across = cross(&tangent_u, &tangent_v);
-        let down = dot(&across, &across).sqrt().sqrt() * relief_depth;
+        let down = repeat_length(&cross(&tangent_u, &tangent_v)) * relief_depth;
         let way =
             [0, 1, 2].map(|i| tangent_u[i] * moved[0] + tangent_v[i] * moved[1] - down * normal[i]);
         let covered = pair.covered_bits();
@@ -111,17 +110,10 @@ impl ViewRays {
 
     /// All of their points by the axes across a light and to it.
     fn spots(&self, axes: [Vec3; 3]) -> Spots {
-        let range = |from: PixelLanes, to: PixelLanes| {
-            let [least, most] = [from.fast_min(to), from.fast_max(to)].map(PixelLanes::to_array);
-            set_bits(self.covered)
-                .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
-        };
         let ranges = axes.map(|axis| {
             let (from, way) = (along(&self.polygon, axis), along(&self.way, axis));
-            let half =
-                (along(&self.steps[0], axis).abs() + along(&self.steps[1], axis).abs()) * 0.5;
-            let [a, b] = range(from.fast_min(from + way) - half, from.fast_max(from + way) + half);
-            [a, b]
+            let (to, half) = (from + way, half_width(&self.steps, axis));
+            range(self.covered, from.fast_min(to) - half, from.fast_max(to) + half)
         });
         let mean = |of: &Vectors| {
             let sum = set_bits(self.covered).fold(Vec3::ZERO, |sum, lane| sum + of_lane(of, lane));
@@ -129,7 +121,8 @@ impl ViewRays {
             Vec3::from(axes.map(|axis| axis.dot(mean)))
         };
         let [x, y, up] = ranges;
+        let [reach, _] = range(self.covered, self.reach, self.reach);
         let polygon = [mean(&self.polygon), mean(&self.normal)];
-        Spots { across: [x, y], lowest: up[0], polygon, reach: range(self.reach, self.reach)[0] }
+        Spots { across: [x, y], lowest: up[0], polygon, reach }
     }
 }

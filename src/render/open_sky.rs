@@ -13,7 +13,7 @@
 //!
 //! What the relief hides of the sky is baked already; of both a place shows the product.
 
-use crate::light::exact::{LightRay, Occluders};
+use crate::light::exact::Occluders;
 use crate::light::spiral;
 use crate::raster::{QuadBlock, QuadPair};
 use crate::scene::Scene;
@@ -252,11 +252,9 @@ fn rays(scene: &Scene, normal: Vec3) -> Vec<(Vec3, Vec3)> {
 
 /// The sum of what gets to a point past all meshes.
 fn left(occluders: &Occluders, facing: &Facing, from: Vec3, rays: &[(Vec3, Vec3)]) -> Vec3 {
-    let from = from.as_dvec3();
-    let reach = f64::from(2.0 * facing.down) + from.abs().max_element() * 1e-5;
+    let Facing { down, is_turned, .. } = *facing;
     rays.iter().fold(Vec3::ZERO, |sum, (direction, color)| {
-        let (direction, distance) = (direction.as_dvec3(), f64::INFINITY);
-        let ray = LightRay { from, direction, distance, reach, is_turned: facing.is_turned };
-        if *color == Vec3::ZERO || occluders.hide(&ray) { sum } else { sum + *color }
+        let is_hidden = || occluders.hide_sky(from, *direction, (down, is_turned));
+        if *color == Vec3::ZERO || is_hidden() { sum } else { sum + *color }
     })
 }

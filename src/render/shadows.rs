@@ -15,8 +15,8 @@
 
 use super::ground::{Ground, LitPiece};
 use super::shade::{ShadeScratch, Shader};
-use crate::light::Disc;
 use crate::light::exact::{Occluders, Receiver};
+use crate::light::{Disc, Vectors, cross, repeat_length};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
 use crate::relief::{displacement, march};
 use crate::scene::{Light, Scene};
@@ -29,9 +29,6 @@ const RAYS: usize = 16;
 /// Those of them that go first: to the four points nearest to the disc's edge, from places all over
 /// the pixel.
 const FIRST: [usize; 4] = [2, 4, 9, 11];
-
-/// Three coordinates of eight pixels.
-pub(super) type Vectors = [PixelLanes; 3];
 
 /// A sun, and the triangles that may hide it from a block.
 pub(super) struct Hidden {
@@ -146,12 +143,22 @@ pub(super) struct Places {
 impl Places {
     /// How far along an axis points over the covered pixels around `from` lie.
     fn range(&self, from: &Vectors, axis: Vec3) -> [f32; 2] {
-        let half = (along(&self.steps[0], axis).abs() + along(&self.steps[1], axis).abs()) * 0.5;
+        let half = half_width(&self.steps, axis);
         let middle = along(from, axis);
-        let [least, most] = [middle - half, middle + half].map(PixelLanes::to_array);
-        set_bits(self.covered)
-            .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
+        range(self.covered, middle - half, middle + half)
     }
+}
+
+/// Half of what pixels span along an axis, by how far a point moves from one to the next.
+pub(super) fn half_width(steps: &[Vectors; 2], axis: Vec3) -> PixelLanes {
+    (along(&steps[0], axis).abs() + along(&steps[1], axis).abs()) * 0.5
+}
+
+/// The least and the greatest of picked lanes.
+pub(super) fn range(lanes: u8, least: PixelLanes, most: PixelLanes) -> [f32; 2] {
+    let [least, most] = [least, most].map(PixelLanes::to_array);
+    set_bits(lanes)
+        .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
 }
 
 /// How far a point moves from a column of pixels to the next, and a row.
@@ -179,9 +186,7 @@ pub(super) fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &
     let Some(field) = ground.prepared.field() else { return all };
     let along = displacement(&pair.view(), field.relief_depth);
     let depth = march(field, &pair.uv, &along);
-    // The world length of a repeat, by which relief goes down.
-    let across = cross(&tangent_u, &tangent_v);
-    let repeat = dot(&across, &across).sqrt().sqrt();
+    let repeat = repeat_length(&cross(&tangent_u, &tangent_v));
     let down = depth * repeat * field.relief_depth;
     let relief = [0, 1, 2].map(|i| {
         let moved = (tangent_u[i] * along[0] + tangent_v[i] * along[1]) * depth;
@@ -287,12 +292,4 @@ fn passes(from: &Vectors, direction: Vec3, triangle: &[Vec3; 3], reach: PixelLan
     }
     // From behind, which hides nothing near by.
     hides & distance.abs().simd_gt(reach * normal.length())
-}
-
-pub(super) fn cross(a: &Vectors, b: &Vectors) -> Vectors {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(super) fn dot(a: &Vectors, b: &Vectors) -> PixelLanes {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

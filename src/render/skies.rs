@@ -1,11 +1,11 @@
 //! What of the sky gets past the meshes of a scene, at the vertices of curved ones.
 //!
 //! How much of the sky a mesh sees changes slowly over it. So rays are sent from few places alone,
-//! once, and a pixel blends those around it: the vertices, and in a large triangle those of a lattice. What they find is
-//! kept as the nearest sky that is linear in the direction (see [`LinearSky`]), which the relief's
-//! own occlusion is then multiplied with.
+//! once, and a pixel blends those around it: the vertices, and in a large triangle those of a
+//! lattice. What they find is kept as the nearest sky that is linear in the direction (see
+//! [`LinearSky`]), which the relief's own occlusion is then multiplied with.
 
-use crate::light::exact::{LightRay, Occluders};
+use crate::light::exact::Occluders;
 use crate::light::{FrameLanes, LinearSky};
 use crate::raster::QuadPair;
 use crate::scene::{Mesh, Scene};
@@ -132,7 +132,7 @@ impl OfMesh {
             let of = corners.into_iter().zip(shares);
             return LinearSky::blend(of.map(|(i, share)| (self.at_vertices[i][side], share)));
         }
-        // Find the small triangle of the lattice: rows of `parts - i + 1` places from the first corner.
+        // Find the small triangle of the lattice: from the first corner rows of `parts - i + 1` places.
         let [x, y] = [shares[1], shares[2]].map(|share| share * parts as f32);
         let [i, j] = [x, y].map(|c| (c as u32).min(parts - 1));
         let [fx, fy] = [x - i as f32, y - j as f32];
@@ -168,14 +168,12 @@ fn sky_at(scene: &Scene, occluders: &Occluders, mesh: &Mesh, (corners, shares): 
     };
     [front, -front].map(|normal| {
         // From half way down the relief: what it hides itself is told apart.
-        let from = (position - normal * (0.5 * down)).as_dvec3();
-        let reach = f64::from(2.0 * down) + from.abs().max_element() * 1e-5;
+        let from = position - normal * (0.5 * down);
         let is_turned = normal != front;
         LinearSky::new(normal, |direction| {
             let color = scene.sky.radiance(direction);
-            let direction = direction.as_dvec3();
-            let ray = LightRay { from, direction, distance: f64::INFINITY, reach, is_turned };
-            if color == Vec3::ZERO || occluders.hide(&ray) { Vec3::ZERO } else { color }
+            let is_hidden = || occluders.hide_sky(from, direction, (down, is_turned));
+            if color == Vec3::ZERO || is_hidden() { Vec3::ZERO } else { color }
         })
     })
 }

@@ -56,8 +56,8 @@ impl Own {
 }
 
 impl Receiver {
-    /// Of points of a relief on a flat piece, whose polygon has a unit normal and holds a point; `None` without
-    /// points.
+    /// Of points of a relief on a flat piece, whose polygon has a unit normal and holds a point;
+    /// `None` without points.
     pub fn new(points: impl Iterator<Item = Vec3>, normal: Vec3, polygon: Vec3) -> Option<Self> {
         let (middle, half) = boxed(points)?;
         Some(Self { middle, half, normal, top: normal.dot(polygon - middle), own: None })

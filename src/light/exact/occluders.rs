@@ -96,6 +96,14 @@ impl Occluders {
         self.any(|node| node.is_on(ray, inverse), |triangle| ray.is_hidden_by(triangle))
     }
 
+    /// Whether a triangle lies between a point in a relief and the sky in a direction; the point is
+    /// half way down the relief, which goes `down` in the world from its polygon.
+    pub fn hide_sky(&self, from: Vec3, direction: Vec3, (down, is_turned): (f32, bool)) -> bool {
+        let (from, direction) = (from.as_dvec3(), direction.as_dvec3());
+        let reach = f64::from(2.0 * down) + from.abs().max_element() * 1e-5;
+        self.hide(&LightRay { from, direction, distance: f64::INFINITY, reach, is_turned })
+    }
+
     /// Whether a triangle in boxes that are wanted is the one; none is looked at after it.
     #[inline(always)]
     pub(super) fn any(

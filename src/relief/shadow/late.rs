@@ -1,7 +1,8 @@
 //! The sweep of light over a relief: how late the latest light came in before each texel.
 
-use crate::simd::{Blend, TexelLanes, high_half};
-use crate::texture::{FULL_F32, Rows, Wrap};
+use super::crossed::Crossed;
+use crate::simd::TexelLanes;
+use crate::texture::{Rows, Wrap};
 use rayon::prelude::*;
 
 /// Lines that are walked together, in whole vectors: a row's of them are whole cache lines.
@@ -92,43 +93,16 @@ impl Walk<'_> {
         let mut records = [TexelLanes::splat(f32::MIN); VECTORS];
         for i in -lead..num_rows {
             let row_number = start + i * self.toward;
-            let row = self.row(first, row_number);
+            let x = first as f32 + self.shear * row_number as f32;
+            let row = Crossed::new(self.rows, row_number, x);
             let mut unseen = [0.0; LINES];
             let latest = if i < 0 { &mut unseen } else { &mut latest[row_number as usize] };
             for (v, record) in records.iter_mut().enumerate() {
-                let depth = TexelLanes::ONE - row.height(first, v) * (1.0 / FULL_F32);
+                let depth = TexelLanes::ONE - row.height_between((v * 8) as i32);
                 let place = TexelLanes::splat(i as f32) - depth * self.depth;
                 latest[v * 8..][..8].copy_from_slice((*record - i as f32).as_array());
                 *record = record.fast_max(place);
             }
         }
-    }
-    /// The texels of a row that the lines cross.
-    #[inline(always)]
-    fn row(&self, first: i32, row: i32) -> Crossed<'_> {
-        let x = first as f32 + self.shear * row as f32;
-        let left = x.floor();
-        let (words, column) = (self.rows.row(row), left as i32 - first);
-        Crossed { rows: self.rows, words, column, blend: Blend::new(TexelLanes::splat(x - left)) }
-    }
-}
-
-/// A row where lines cross it.
-struct Crossed<'a> {
-    rows: &'a Rows,
-    words: &'a [u32],
-    /// How many columns the lines have moved.
-    column: i32,
-    /// How far they are on to the next column.
-    blend: Blend,
-}
-
-impl Crossed<'_> {
-    /// Heights of the v-th eight lines.
-    #[inline(always)]
-    fn height(&self, first: i32, v: usize) -> TexelLanes {
-        let column = first + self.column + (v * 8) as i32;
-        let start = self.rows.run_start(column) + self.rows.stride();
-        high_half(self.blend.mix([start, start + 1].map(|start| Rows::run(self.words, start))))
     }
 }

@@ -20,11 +20,13 @@
 //! the lit parts of the segments beside it, before and after it on the light's line, and of walls
 //! between it and its neighbours in the row ([`Share`]).
 
+mod crossed;
 mod late;
 mod share;
 
-use crate::simd::{Blend, TexelLanes, high_half};
-use crate::texture::{FULL_F32, Level, Rows};
+use crate::simd::TexelLanes;
+use crate::texture::{Level, Rows};
+use crossed::Crossed;
 use late::Latest;
 use share::{STEEP, Share, flat, lit};
 
@@ -83,7 +85,10 @@ impl<'a> LitParts<'a> {
         padded.clear();
         padded.push(latest[latest.len() - 1]);
         padded.extend(latest.iter().cycle().take(8 * num_vectors + 1));
-        let [before, own, after] = [-1, 0, 1].map(|step| Passed::new(self, y as i32, step));
+        // The rows that lines through the texels of this one pass before and after it.
+        let [before, own, after] = [-1, 0, 1].map(|step| {
+            Crossed::new(self.rows, y as i32 + step * self.toward, step as f32 * self.shear)
+        });
         to.clear();
         for x in (0..8 * num_vectors).step_by(8) {
             let columns = [0, 1, 2].map(|i| lanes(&padded[x + i..]));
@@ -131,43 +136,4 @@ impl<'a> LitParts<'a> {
 #[inline(always)]
 fn lanes(numbers: &[f32]) -> TexelLanes {
     TexelLanes::new(numbers[..8].try_into().expect("eight"))
-}
-
-/// A row as lines of light pass it that go through the texels of a row near by.
-struct Passed<'a> {
-    rows: &'a Rows,
-    words: &'a [u32],
-    /// How many columns the lines have moved, and how far they are on to the next.
-    column: i32,
-    blend: Blend,
-}
-
-impl<'a> Passed<'a> {
-    /// The row that lines pass so many steps after row y.
-    fn new(lit: &LitParts<'a>, y: i32, step: i32) -> Self {
-        let moved = step as f32 * lit.shear;
-        let column = moved.floor();
-        let blend = Blend::new(TexelLanes::splat(moved - column));
-        let words = lit.rows.row(y + step * lit.toward);
-        Self { rows: lit.rows, words, column: column as i32, blend }
-    }
-
-    /// Heights, 0 to 1, of eight texels, the first in column `x`.
-    #[inline(always)]
-    fn height(&self, x: i32) -> TexelLanes {
-        high_half(Rows::run(self.words, self.start(x))) * (1.0 / FULL_F32)
-    }
-
-    /// Heights where the lines pass that go through such texels of row y.
-    #[inline(always)]
-    fn height_between(&self, x: i32) -> TexelLanes {
-        let start = self.start(x + self.column);
-        let words = self.blend.mix([start, start + 1].map(|start| Rows::run(self.words, start)));
-        high_half(words) * (1.0 / FULL_F32)
-    }
-
-    #[inline(always)]
-    fn start(&self, x: i32) -> usize {
-        self.rows.run_start(x) + self.rows.stride()
-    }
 }
