@@ -38,7 +38,7 @@ pub struct RasterStats {
     pub coverage_ms: f64,
     /// Attribute planes of the triangles that are seen.
     pub attributes_ms: f64,
-    /// Shading.
+    /// Shading, with the sum of its colours.
     pub shade_ms: f64,
 }
 
@@ -116,6 +116,7 @@ impl Rasterizer {
         // Paint the tiles in parallel. Only times and counts come back to be summed, so the order
         // in which threads end shows nowhere in the picture.
         let painter = Painter { geometry, scene, settings, group, grid, bins: &self.bins, clock };
+        let development = Development::of(settings, P::IS_PICTURE);
         let scratches = &self.scratches;
         let mut rows = rows_by_tile(frame, &grid);
         let tiles = rows
@@ -123,7 +124,7 @@ impl Rasterizer {
             .enumerate()
             .map_init(
                 || scratches.take(),
-                |scratch, (tile, rows)| painter.paint(tile, rows, scratch, shade),
+                |scratch, (tile, rows)| painter.paint(tile, rows, scratch, (shade, &development)),
             )
             .reduce(RasterStats::default, RasterStats::add);
         RasterStats { triangles_drawn: geometry.num_triangles() as u64, binning_ms, ..tiles }
@@ -168,9 +169,11 @@ impl Painter<'_> {
         tile: usize,
         rows: &mut [&mut [P]],
         scratch: &mut Scratch,
-        shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
+        (shade, development): (
+            &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
+            &Development,
+        ),
     ) -> RasterStats {
-        let development = Development::of(self.settings, P::IS_PICTURE);
         let rect = self.grid.rect(tile);
         scratch.list.clear();
         self.bins.list(tile, &mut scratch.list);
@@ -194,18 +197,19 @@ impl Painter<'_> {
         if !is_set {
             scratch.canvas.clear();
         }
-        let (pixels_shaded, shade_ms) = self.shade_quads(&rect, scratch, shade);
+        let pixels_shaded = self.shade_quads(&rect, scratch, shade);
+        let shaded = (self.clock)();
         if !is_full {
             scratch.canvas.add_background(self.background());
         }
-        scratch.canvas.develop(&development);
+        scratch.canvas.develop(development);
         scratch.canvas.copy_to(rows);
         RasterStats {
             pixels_shaded,
             quads_shaded: scratch.quads.len() as u64,
             coverage_ms: seen - start,
             attributes_ms: found - seen,
-            shade_ms,
+            shade_ms: shaded - found,
             ..RasterStats::default()
         }
     }
@@ -263,29 +267,27 @@ impl Painter<'_> {
     }
 
     /// Shades the quads block by block and adds their colours to the pixels; gives how many pixels
-    /// that was, and what the shading took.
+    /// that was.
     fn shade_quads(
         &self,
         rect: &Rect,
         scratch: &mut Scratch,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
-    ) -> (u64, f64) {
+    ) -> u64 {
         let Scratch { quads, planes, grounds, colors, canvas, .. } = scratch;
         // One over a power of two: shares of a pixel add up to 1 without rounding.
         let share = 1.0 / self.settings.msaa as f32;
         let block_of = |quad: &SeenQuad| quad.origin.map(|c| usize::from(c) / SHADED_BLOCK);
-        let (mut num_shaded, mut shade_ms) = (0, 0.0);
+        let mut num_shaded = 0;
         // The list goes block by block, so each block is one run of it.
         for block in quads.chunk_by_mut(|a, b| block_of(a) == block_of(b)) {
             // The stable sort keeps the order of places and triangles.
             block.sort_by_key(|quad| quad.group);
             for quads in block.chunk_by(|a, b| a.group == b.group) {
                 colors.clear();
-                let start = (self.clock)();
                 let [material, group] =
                     grounds[quads[0].triangle as usize].map(|index| index as usize);
                 shade(&QuadBlock { material, group, tile: rect.min, quads, planes }, colors);
-                shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {
                     // A pair of whole quads is stored; where others may add their share, it is
                     // added.
@@ -298,7 +300,7 @@ impl Painter<'_> {
                 }
             }
         }
-        (num_shaded, shade_ms)
+        num_shaded
     }
 
     /// Whether the triangle is all that the quad's samples see.
