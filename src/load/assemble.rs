@@ -10,7 +10,7 @@ use super::stage::{LoadStage, Report};
 use super::{models, surfaces};
 use crate::decode::open_regular;
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Light, Material, Mesh, Scene, Sky};
+use crate::scene::{Camera, Light, Material, MaterialMaps, Mesh, Scene, Sky};
 use glam::Vec3;
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashSet};
@@ -157,6 +157,7 @@ fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
         metallic: given.metallic.or(from.metallic.map(unit)).unwrap_or(fallback.metallic),
         roughness: given.roughness.or(roughness).unwrap_or(fallback.roughness),
         emissive: given.emissive.or(from.emissive.map(color)).unwrap_or(fallback.emissive),
+        maps: MaterialMaps::default(),
         surface: None,
     }
 }
