@@ -27,7 +27,7 @@ fn light(criterion: &mut Criterion) {
     ] {
         let beams = frame.beams(lights, sky).expect("no point lights");
         group.bench_function(format!("bake/1024_{name}"), |b| {
-            b.iter(|| baked(black_box(&street), &beams));
+            b.iter(|| baked(black_box(&street), [&beams, &[]], None));
         });
     }
     group.finish();

@@ -185,7 +185,9 @@ pub use footprint::FootprintRule;
 pub use frame::Frame;
 pub use layers::{Layer, Layers};
 pub use render::{DrawnPixel, Renderer, Stats, render};
-pub use scene::{Camera, Environment, Intrinsics, Light, Material, Mesh, PoseAxes, Scene, Sky};
+pub use scene::{
+    Camera, Environment, Intrinsics, Light, Material, MaterialMaps, Mesh, PoseAxes, Scene, Sky,
+};
 pub use settings::{
     Derivatives, Ewa, Filter, Formulas, Horizon, Lighting, OptionsMut, RECONSTRUCTION, Rays,
     Region, Settings, Tone, Trilinear, Visibility, Visible,

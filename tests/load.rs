@@ -290,6 +290,32 @@ fn norm_and_map_kn_are_normal_maps_with_green_up_or_down() {
 }
 
 #[test]
+fn textures_of_metal_roughness_and_emission_are_read_for_light() {
+    let lines = "Pm 0\nPr 0.3\nmap_Pm m.png\nmap_Pr -imfchan g r.png\nmap_Ke e.png";
+    let mut files = Files::quad(lines);
+    files.image("m.png", gray(&[0, 255]));
+    files.image("r.png", one(9, 51, 200));
+    files.image("e.png", one(255, 0, 255));
+    files.image("o.png", gray(&[255; 3]));
+    assert!(files.load().scene.materials[0].surface.is_none(), "nothing is drawn without light");
+    files.options.keep_normals = true;
+    files.options.all.occlusion_map = Some(files.path("o.png"));
+    let material = files.load().scene.materials.remove(0);
+    assert_eq!(
+        (material.metallic, material.roughness, material.emissive),
+        (1.0, 1.0, Vec3::ONE),
+        "textures in place of numbers"
+    );
+    let finish = material.finish(|map| map.at([0.75, 0.5]));
+    assert_eq!((finish.metallic, finish.occlusion), (1.0, 1.0));
+    assert!((finish.roughness - 0.2).abs() < 1e-4 && finish.emissive == Vec3::new(1.0, 0.0, 1.0));
+    let surface = material.surface.expect("a surface");
+    assert_eq!(surface.base().size(), [3, 2], "as many texels as its textures have");
+    files.options.all.emissive = Some(Vec3::splat(3.0));
+    assert_eq!(files.load().scene.materials[0].emissive, Vec3::splat(3.0));
+}
+
+#[test]
 fn bm_is_the_depth_unless_the_caller_says_another() {
     let mut files = Files::quad("disp h.png -bm 0.1");
     files.image("h.png", gray(&[0, 255]));

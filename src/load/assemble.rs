@@ -10,7 +10,7 @@ use super::stage::{LoadStage, Report};
 use super::{models, surfaces};
 use crate::decode::open_regular;
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Light, Material, Mesh, Scene, Sky};
+use crate::scene::{Camera, Light, Material, MaterialMaps, Mesh, Scene, Sky};
 use glam::Vec3;
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashSet};
@@ -94,9 +94,11 @@ pub(super) fn load_from(
     let surfaces =
         surfaces::build(&plans.plans.iter().flatten().cloned().collect(), options, report)?;
     let materials = materials.iter().zip(&plans.plans).map(|(material, plan)| {
-        let surface = plan.as_ref().and_then(|plan| surfaces.get(plan)).cloned();
+        let built = plan.as_ref().and_then(|plan| surfaces.get(plan)).cloned();
+        let (surface, maps) = built.map(|built| (built.surface, built.maps)).unzip();
         let own = options.materials.get(&material.name).cloned().unwrap_or_default();
-        Material { surface, ..plain_material(material, &own.or(&options.all)) }
+        let maps = maps.unwrap_or_default();
+        Material { surface, ..plain_material(material, &own.or(&options.all), maps) }
     });
     let mut scene = Scene { meshes, materials: materials.collect(), ..Scene::default() };
     frame(&mut scene, options.aspect);
@@ -143,20 +145,28 @@ fn plans(
     Ok(Plans { plans, choices, warnings })
 }
 
-fn plain_material(from: &MtlMaterial, given: &MaterialOptions) -> Material {
+/// A material without its surface. A texture takes the place of the file's number of metal or
+/// roughness; what it sends out is multiplied with `Ke`, where that is not black.
+fn plain_material(from: &MtlMaterial, given: &MaterialOptions, maps: MaterialMaps) -> Material {
     // Beyond these bounds a number is a mistake in the file that need not stop the picture.
     let color = |c: [f32; 3]| Vec3::from_array(c).clamp(Vec3::ZERO, Vec3::splat(1e6));
     let unit = |number: f32| number.clamp(0.0, 1.0);
     let fallback = Material::default();
+    let of_map = |map: &Option<_>| map.as_ref().map(|_| 1.0);
     let roughness = from.roughness.map(unit).or_else(|| roughness_of_highlight(from));
-    let reflects = roughness.or(given.roughness).or(from.metallic).is_some();
+    let roughness = of_map(&maps.roughness).or(roughness);
+    let metallic = of_map(&maps.metallic).or(from.metallic.map(unit));
+    let emissive = from.emissive.map(color).filter(|color| *color != Vec3::ZERO);
+    let emissive = emissive.or(maps.emissive.as_ref().map(|_| Vec3::ONE));
+    let reflects = roughness.or(given.roughness).or(metallic).is_some();
     Material {
         name: from.name.clone(),
         base_color: given.base_color.or(from.diffuse.map(color)).unwrap_or(fallback.base_color),
         specular: given.specular.unwrap_or(f32::from(u8::from(reflects))),
-        metallic: given.metallic.or(from.metallic.map(unit)).unwrap_or(fallback.metallic),
+        metallic: given.metallic.or(metallic).unwrap_or(fallback.metallic),
         roughness: given.roughness.or(roughness).unwrap_or(fallback.roughness),
-        emissive: given.emissive.or(from.emissive.map(color)).unwrap_or(fallback.emissive),
+        emissive: given.emissive.or(emissive).unwrap_or(fallback.emissive),
+        maps,
         surface: None,
     }
 }

@@ -42,7 +42,7 @@ pub fn load_image_bytes(bytes: &[u8]) -> Result<()> {
     let samples = decode::samples_bytes(bytes, Path::new("image.tga"), limits)?;
     let _ = (
         samples.color(),
-        samples.height(None, [0.0, 1.0]),
+        samples.gray(None, [0.0, 1.0]),
         samples.normal(1.0, 1.0),
         samples.is_gray(),
     );

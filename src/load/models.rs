@@ -87,7 +87,9 @@ fn placement(material: &MtlMaterial) -> (Vec2, Vec2) {
 }
 
 fn textures(material: &MtlMaterial) -> impl Iterator<Item = &TextureRef> {
-    [&material.albedo, &material.height, &material.bump, &material.normal].into_iter().flatten()
+    let MtlMaterial { albedo, height, bump, normal, .. } = material;
+    let MtlMaterial { metallic_map, roughness_map, emissive_map, .. } = material;
+    [albedo, height, bump, normal, metallic_map, roughness_map, emissive_map].into_iter().flatten()
 }
 
 /// Warns of maps whose own scale and shift are not those that are used.

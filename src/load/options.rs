@@ -37,6 +37,14 @@ pub struct MaterialOptions {
     pub height: Option<PathBuf>,
     /// Normal map for materials with texture coordinates.
     pub normal: Option<PathBuf>,
+    /// Texture of metal for materials with texture coordinates; `None`: `map_Pm`.
+    pub metallic_map: Option<PathBuf>,
+    /// Texture of roughness for materials with texture coordinates; `None`: `map_Pr`.
+    pub roughness_map: Option<PathBuf>,
+    /// Texture of occlusion for materials with texture coordinates.
+    pub occlusion_map: Option<PathBuf>,
+    /// Texture of emission for materials with texture coordinates; `None`: `map_Ke`.
+    pub emissive_map: Option<PathBuf>,
     /// Which end of the height map is high; `None`: white.
     pub height_sense: Option<HeightSense>,
     /// Relief depth in texture repeats, 0 to 1; `None`: `-bm` of the height map in the MTL, else
@@ -49,25 +57,38 @@ pub struct MaterialOptions {
     pub wrap: Option<Wrap>,
     /// What multiplies the colour map, linear RGB, 0 to 1e6; `None`: `Kd`, else 1.
     pub base_color: Option<Vec3>,
-    /// 0 for a dielectric, 1 for a metal; `None`: `Pm`, else 0.
+    /// 0 for a dielectric, 1 for a metal; `None`: 1 where there is a texture of it, else `Pm`, else
+    /// 0.
     pub metallic: Option<f32>,
     /// How strongly a dielectric reflects, 0 to 1; `None`: 1 where the MTL has a `Ks` that is not
-    /// black, `Pr` or `Pm`, or `roughness` is given here, else 0.
+    /// black, `Pr`, `Pm` or a texture of them, or `roughness` is given here, else 0.
     pub specular: Option<f32>,
-    /// How rough it is, 0 to 1; `None`: `Pr`, else that of the exponent `Ns` where `Ks` is not
-    /// black, else 1.
+    /// How rough it is, 0 to 1; `None`: 1 where there is a texture of it, else `Pr`, else that of the
+    /// exponent `Ns` where `Ks` is not black, else 1.
     pub roughness: Option<f32>,
-    /// Light that it sends out, linear RGB, 0 to 1e6; `None`: `Ke`, else 0.
+    /// Light that it sends out, linear RGB, 0 to 1e6; `None`: `Ke`, else 0; 1 in place of 0 where
+    /// there is a texture of it.
     pub emissive: Option<Vec3>,
 }
 
 impl MaterialOptions {
+    /// The files that can be given.
+    pub fn files_mut(&mut self) -> [&mut Option<PathBuf>; 7] {
+        let Self { albedo, height, normal, metallic_map, roughness_map, .. } = self;
+        let (occlusion, emissive) = (&mut self.occlusion_map, &mut self.emissive_map);
+        [albedo, height, normal, metallic_map, roughness_map, occlusion, emissive]
+    }
+
     /// These options, and those of `other` where these say nothing.
     pub fn or(self, other: &Self) -> Self {
         Self {
             albedo: self.albedo.or_else(|| other.albedo.clone()),
             height: self.height.or_else(|| other.height.clone()),
             normal: self.normal.or_else(|| other.normal.clone()),
+            metallic_map: self.metallic_map.or_else(|| other.metallic_map.clone()),
+            roughness_map: self.roughness_map.or_else(|| other.roughness_map.clone()),
+            occlusion_map: self.occlusion_map.or_else(|| other.occlusion_map.clone()),
+            emissive_map: self.emissive_map.or_else(|| other.emissive_map.clone()),
             height_sense: self.height_sense.or(other.height_sense),
             relief_depth: self.relief_depth.or(other.relief_depth),
             normal_y: self.normal_y.or(other.normal_y),
@@ -89,7 +110,8 @@ pub struct LoadOptions {
     /// What is said of single materials, by their names, before what is said of all. Default:
     /// nothing.
     pub materials: BTreeMap<String, MaterialOptions>,
-    /// Whether surfaces keep normals, which only lighting needs. Default: `false`.
+    /// Whether surfaces keep normals, and materials their textures of metal, roughness, occlusion
+    /// and emission, which only lighting needs. Default: `false`.
     pub keep_normals: bool,
     /// Width over height of the picture that the camera frames the scene for, above 0; wider
     /// pictures show all of it, too. Default: 1.

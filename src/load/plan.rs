@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 const DEFAULT_DEPTH: f32 = 0.05;
 
 /// In the order of plans.
-const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
+pub(super) const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
 
 /// An image file and how it is read.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,14 +32,42 @@ pub(super) struct Map {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
     Color,
-    Height { channel: Option<Channel>, range: [u32; 2] },
-    Normal { strength: u32, is_green_down: bool },
+    Height {
+        channel: Option<Channel>,
+        range: [u32; 2],
+    },
+    Normal {
+        strength: u32,
+        is_green_down: bool,
+    },
+    /// One number a texel: as `Height`.
+    Gray {
+        channel: Option<Channel>,
+        range: [u32; 2],
+    },
 }
 
 impl Kind {
     /// Bytes of a texel once it is read.
     pub(super) fn num_bytes(&self) -> u64 {
-        if matches!(self, Self::Height { .. }) { 2 } else { 6 }
+        if matches!(self, Self::Height { .. } | Self::Gray { .. }) { 2 } else { 6 }
+    }
+}
+
+/// Textures of a material's numbers.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Numbers {
+    pub(super) metallic: Option<Map>,
+    pub(super) roughness: Option<Map>,
+    pub(super) occlusion: Option<Map>,
+    pub(super) emissive: Option<Map>,
+}
+
+impl Numbers {
+    /// Those that there are.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Map> {
+        let Self { metallic, roughness, occlusion, emissive } = self;
+        [metallic, roughness, occlusion, emissive].into_iter().flatten()
     }
 }
 
@@ -49,6 +77,8 @@ pub(super) struct Plan {
     albedo: Option<Map>,
     height: Option<Map>,
     normal: Option<Map>,
+    /// Textures of the material's numbers.
+    pub(super) numbers: Numbers,
     /// Index into [`WRAPS`].
     wrap: usize,
     /// The relief depth as bits.
@@ -58,11 +88,21 @@ pub(super) struct Plan {
 impl Plan {
     /// The maps that there are.
     pub(super) fn maps(&self) -> impl Iterator<Item = &Map> {
+        self.surface_maps().chain(self.numbers.all())
+    }
+
+    /// Those of them that the surface is made from.
+    pub(super) fn surface_maps(&self) -> impl Iterator<Item = &Map> {
         [&self.albedo, &self.height, &self.normal].into_iter().flatten()
     }
 
     pub(super) fn wrap(&self) -> Wrap {
         WRAPS[self.wrap]
+    }
+
+    /// Index into [`WRAPS`].
+    pub(super) fn wrap_index(&self) -> usize {
+        self.wrap
     }
 
     /// Whether there is anything to take normals from.
@@ -125,9 +165,15 @@ impl<'a> Planner<'a> {
 
     /// Notes the files that the caller names.
     fn note(&mut self, whose: &str, given: &MaterialOptions) {
-        for (what, path) in
-            [("colour", &given.albedo), ("height", &given.height), ("normals", &given.normal)]
-        {
+        for (what, path) in [
+            ("colour", &given.albedo),
+            ("height", &given.height),
+            ("normals", &given.normal),
+            ("metal", &given.metallic_map),
+            ("roughness", &given.roughness_map),
+            ("occlusion", &given.occlusion_map),
+            ("emission", &given.emissive_map),
+        ] {
             if let Some(path) = path {
                 self.choices.push(format!("{whose}: {what} from {}", path.display()));
             }
@@ -192,7 +238,8 @@ impl<'a> Planner<'a> {
         let fallback = if albedo_clamped || height_clamped { Wrap::Clamp } else { Wrap::Repeat };
         let wrap = self.given(material).wrap.unwrap_or(fallback);
         let wrap = WRAPS.iter().position(|w| *w == wrap).unwrap_or_default();
-        let plan = Plan { albedo, height, normal, wrap, depth: depth.to_bits() };
+        let numbers = self.numbers(material)?;
+        let plan = Plan { albedo, height, normal, numbers, wrap, depth: depth.to_bits() };
         let has_maps = plan.maps().next().is_some();
         Ok(has_maps.then_some(plan))
     }
@@ -221,6 +268,30 @@ impl<'a> Planner<'a> {
         let found = self.found(material.albedo.as_ref())?;
         let is_clamped = found.as_ref().is_some_and(|(texture, _)| texture.texture.is_clamped);
         Ok((found.map(|(_, path)| Map { path, kind: Kind::Color }), is_clamped))
+    }
+
+    /// Textures of a material's numbers, which only lighting asks for.
+    fn numbers(&mut self, material: &MtlMaterial) -> Result<Numbers> {
+        if !self.options.keep_normals {
+            return Ok(Numbers::default());
+        }
+        let given = self.given(material).clone();
+        let mut of = |given: Option<PathBuf>, line: Option<&TextureRef>, is_gray: bool| {
+            let (channel, range, path) = match (given, self.found(line)?) {
+                (Some(path), _) => (None, [0.0, 1.0], path),
+                (None, Some((line, path))) => (line.texture.channel, line.texture.range, path),
+                (None, None) => return Ok(None),
+            };
+            let range = range.map(f32::to_bits);
+            let kind = if is_gray { Kind::Gray { channel, range } } else { Kind::Color };
+            Ok(Some(Map { path, kind }))
+        };
+        Ok(Numbers {
+            metallic: of(given.metallic_map, material.metallic_map.as_ref(), true)?,
+            roughness: of(given.roughness_map, material.roughness_map.as_ref(), true)?,
+            occlusion: of(given.occlusion_map, None, true)?,
+            emissive: of(given.emissive_map, material.emissive_map.as_ref(), false)?,
+        })
     }
 
     fn height(
@@ -294,10 +365,11 @@ fn height_kind(
 
 /// `given` with its files' absolute paths.
 fn with_real_paths(given: &MaterialOptions) -> Result<MaterialOptions> {
-    let real = |path: &Option<PathBuf>| path.as_deref().map(real_path).transpose();
-    let (albedo, height, normal) =
-        (real(&given.albedo)?, real(&given.height)?, real(&given.normal)?);
-    Ok(MaterialOptions { albedo, height, normal, ..given.clone() })
+    let mut real = given.clone();
+    for path in real.files_mut().into_iter().flatten() {
+        *path = real_path(path)?;
+    }
+    Ok(real)
 }
 
 /// The path of a file that the caller named.

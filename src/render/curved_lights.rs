@@ -1,7 +1,8 @@
 //! The lights of pairs of a block of a curved surface, for the filter that lights texels with them.
 
-use super::ground::Swept;
+use super::ground::{Ground, Swept};
 use super::skies::Skies;
+use crate::footprint::Footprints;
 use crate::light::{Curved, CurvedSun, Disc, FrameLanes, LinearSky, Slant};
 use crate::raster::{LitLanes, QuadBlock};
 use crate::scene::{Light, Scene};
@@ -52,6 +53,19 @@ impl CurvedLights {
             all.frames.push(frame);
         }
         all
+    }
+
+    /// Takes from the sky what a texture of occlusion says of each pixel.
+    pub(super) fn occlude(&mut self, ground: &Ground, pixels: &[Footprints]) {
+        if ground.material.maps.occlusion.is_none() {
+            return;
+        }
+        for (skies, pixels) in self.skies.iter_mut().zip(pixels) {
+            for lane in pixels.covered() {
+                let share = ground.finish(&pixels.lane(lane)).occlusion;
+                skies[lane] = LinearSky::blend([(skies[lane], share)].into_iter());
+            }
+        }
     }
 
     /// All of them.

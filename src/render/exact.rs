@@ -105,7 +105,9 @@ impl Exact<'_> {
             let place = [samples.x.as_array()[lane], samples.y.as_array()[lane]];
             // Planes of lit frames have all that makes a point.
             let Some(point) = surface_point(samples.planes, place) else { continue };
-            let hit = Hit { point, material: self.material, spot: spot(lane) };
+            let spot = spot(lane);
+            let finish = self.material.finish(|map| map.at(spot.place));
+            let hit = Hit { point, finish, spot };
             sum += self.light.shade(&hit, &samples.sequence, samples.first + lane as u32);
             num_found += 1.0;
         }

@@ -2,12 +2,13 @@
 
 use super::baked::Baked;
 use super::ground::{Ground, Swept};
+use super::mapped::Mapped;
 use super::skies::Skies;
 use crate::filter::Prepared;
 use crate::light::Disc;
 use crate::light::exact::{Ceiling, Occluders};
 use crate::light::reflection::Reflectance;
-use crate::scene::{Light, Scene};
+use crate::scene::{Light, Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::texture::Surface;
 use rayon::prelude::*;
@@ -28,6 +29,8 @@ pub(crate) struct PreparedScene {
     of_material: Vec<Option<usize>>,
     /// Lit for good, with relief or without; `None` where lights are evaluated place by place.
     baked: Option<(bool, Baked)>,
+    /// Of the materials that have textures of their numbers, in lit frames; with relief or without.
+    mapped: Option<(bool, Vec<Option<Mapped>>)>,
     /// What lit frames ask for, made when the first of them does.
     reflectance: OnceLock<Reflectance>,
     /// What the truth's light and shadows ask for.
@@ -75,7 +78,8 @@ impl PreparedScene {
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
         let (reflectance, occluders, ceilings, skies) = Default::default();
-        Self { surfaces, flat, of_material, baked: None, reflectance, occluders, ceilings, skies }
+        let (baked, mapped) = (None, None);
+        Self { surfaces, flat, of_material, baked, mapped, reflectance, occluders, ceilings, skies }
     }
 
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
@@ -89,6 +93,9 @@ impl PreparedScene {
         let is_exact = settings.filter.traits().samples.is_some_and(|rays| rays.is_exact);
         if is_lit && is_exact {
             self.occluders(scene);
+        }
+        if is_lit && !is_exact && self.mapped.as_ref().is_none_or(|m| m.0 != settings.parallax) {
+            self.mapped = Some((settings.parallax, self.mapped(scene, settings.parallax)));
         }
         // Where a point shines, no piece is lit alike all over.
         let has_points = scene.lights.iter().any(|light| matches!(light, Light::Point { .. }));
@@ -121,6 +128,15 @@ impl PreparedScene {
                 .into_par_iter()
                 .for_each(|(surface, is_lit)| surface.make_ready(&settings.filter, is_lit));
         }
+    }
+
+    /// What textures of materials' numbers are drawn by.
+    fn mapped(&self, scene: &Scene, has_relief: bool) -> Vec<Option<Mapped>> {
+        let of = |(i, material): (usize, &Material)| {
+            let unlit = self.of_material(i, has_relief).filter(|_| !material.maps.is_empty())?;
+            Some(Mapped::new(material, unlit))
+        };
+        scene.materials.iter().enumerate().map(of).collect()
     }
 
     /// How much surfaces reflect.
@@ -186,6 +202,8 @@ impl PreparedScene {
         let (prepared, baked) =
             baked.map_or((unlit, None), |(prepared, baked)| (prepared, Some(baked)));
         let is_lit = settings.lighting == Lighting::Lit;
+        let mapped = self.mapped.as_ref().filter(|_| is_lit);
+        let mapped = mapped.and_then(|(_, of)| of.get(material)?.as_ref());
         let material = &scene.materials[material];
         let is_swept = scene.lights.len() <= 64
             && self.baked.is_some()
@@ -194,7 +212,10 @@ impl PreparedScene {
             && prepared.field().is_some()
             && prepared.surface().has_normals();
         let swept = is_swept.then_some(Swept { suns: u64::MAX, has_sky: true });
-        Some(Ground { material, prepared, unlit, is_lit, swept, baked })
+        let diffuse = mapped.and_then(|mapped| mapped.diffuse.as_ref());
+        let prepared = diffuse.filter(|_| is_swept).unwrap_or(prepared);
+        let glow = mapped.and_then(|mapped| mapped.glow.as_ref());
+        Some(Ground { material, prepared, unlit, is_lit, swept, baked, glow })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

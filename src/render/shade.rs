@@ -3,13 +3,14 @@
 use super::curved_lights::CurvedLights;
 use super::exact::Exact;
 use super::ground::{Ground, in_lanes, pixel_center, surface_point};
+use super::mapped::Glow;
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Samples, Scratch, Traits, Work};
-use crate::footprint::{FootprintRule, Footprints};
+use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::light::exact::ExactLight;
 use crate::light::{LocalLights, Reflected};
 use crate::raster::{Pool, QuadBlock, QuadPair};
-use crate::scene::{Material, Scene};
+use crate::scene::{Finish, Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
 use crate::texture::Texel;
@@ -101,6 +102,27 @@ impl<'a> Shader<'a> {
         if ground.baked.is_some() || ground.swept.is_some() {
             self.reflect(&ground, block, &mut scratch, &mut colors[start..]);
         }
+        if let Some(glow) = ground.glow {
+            self.glow(&ground, glow, block, &mut scratch, &mut colors[start..]);
+        }
+    }
+
+    /// Adds what a surface sends out by a texture.
+    fn glow(
+        &self,
+        ground: &Ground,
+        Glow { material, prepared }: &Glow,
+        block: &QuadBlock,
+        scratch: &mut ShadeScratch,
+        colors: &mut [[PixelLanes; 3]],
+    ) {
+        let unlit = Ground { is_lit: false, swept: None, baked: None, glow: None, ..*ground };
+        let mut sent = Vec::with_capacity(colors.len());
+        let sending = Ground { material, prepared, unlit: prepared, ..unlit };
+        self.textured(&sending, block, scratch, &mut sent);
+        for (color, sent) in colors.iter_mut().zip(&sent) {
+            (0..3).for_each(|c| color[c] += sent[c]);
+        }
     }
 
     /// Pixels of a material with a texture.
@@ -129,7 +151,8 @@ impl<'a> Shader<'a> {
             colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
                 Some(lights) => {
                     // Nothing bends the normal here: it is z in the surface's own frame.
-                    self.lit_color(material, (material.base_color, false), Vec3::Z, &lights)
+                    let finish = material.plain_finish();
+                    self.lit_color(&finish, (material.base_color, false), Vec3::Z, &lights)
                 }
                 None => material.base_color,
             };
@@ -152,11 +175,12 @@ impl<'a> Shader<'a> {
         self.footprints(with, (block, pairs.clone()), footprints);
         if ground.asks_for_lights() {
             self.list_lights((block, pairs.clone()), lights);
+            ground.occlude(footprints, lights);
         }
         // Filter all pairs at once, so that pixels near each other can share work.
         // Whatever an earlier block left stays: each covered pixel is written, others are not looked at.
         filtered.resize(pairs.len(), Filtered::default());
-        let curved_lights;
+        let mut curved_lights;
         let curved = if let Some(swept) = ground.swept {
             curved_lights = CurvedLights::new(
                 (self.scene, self.prepared.skies(self.scene)),
@@ -164,6 +188,7 @@ impl<'a> Shader<'a> {
                 block,
                 pairs.clone(),
             );
+            curved_lights.occlude(ground, footprints);
             Some(curved_lights.all())
         } else {
             None
@@ -176,7 +201,8 @@ impl<'a> Shader<'a> {
             colors.extend(footprints.iter().zip(filtered.iter()).map(|(pixels, filtered)| {
                 let mut colors = [Vec3::ZERO; 8];
                 for (lane, lights) in pixels.covered().zip(&mut lights) {
-                    colors[lane] = self.lit(ground, &filtered.lane(lane), Some(lights));
+                    let pixel = pixels.lane(lane);
+                    colors[lane] = self.lit(ground, (&filtered.lane(lane), &pixel), Some(lights));
                 }
                 in_lanes(&colors)
             }));
@@ -222,6 +248,7 @@ impl<'a> Shader<'a> {
         for groups in samples.groups.chunks(GROUPS_AT_ONCE) {
             self.cast(ground, pair, groups, scratch);
             let ShadeScratch { filter, footprints, lights, filtered } = &mut *scratch;
+            ground.occlude(footprints, lights);
             filtered.resize(footprints.len(), Filtered::default());
             let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
             self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
@@ -232,7 +259,8 @@ impl<'a> Shader<'a> {
             for lane in pair.covered() {
                 for (rays, filtered) in found.by_ref().take(groups.len()) {
                     for i in rays.covered() {
-                        sums[lane] += self.lit(ground, &filtered.lane(i), lights.next());
+                        let (texel, ray) = (filtered.lane(i), rays.lane(i));
+                        sums[lane] += self.lit(ground, (&texel, &ray), lights.next());
                         nums[lane] += 1.0;
                     }
                 }
@@ -287,20 +315,25 @@ impl<'a> Shader<'a> {
         self.num_texels[1].fetch_add(work.num_averaged, Ordering::Relaxed);
     }
 
-    /// The colour of a filtered texel.
-    fn lit(&self, ground: &Ground, texel: &Texel, lights: Option<&LocalLights>) -> Vec3 {
+    /// The colour of a filtered texel of a pixel.
+    fn lit(
+        &self,
+        ground: &Ground,
+        (texel, pixel): (&Texel, &Footprint),
+        lights: Option<&LocalLights>,
+    ) -> Vec3 {
         let color = ground.color_of(ground.prepared.surface(), texel);
         let Some(lights) = lights else { return color };
         let normal = Vec3::from(texel.normal);
         let has_light = self.traits.asks_for_lights;
-        self.lit_color(ground.material, (color, has_light), normal, lights)
+        self.lit_color(&ground.finish(pixel), (color, has_light), normal, lights)
     }
 
     /// A colour under lights; a filter that asks for lights has the diffuse part in its mean
     /// already, texel by texel.
     fn lit_color(
         &self,
-        material: &Material,
+        finish: &Finish,
         (color, has_light): (Vec3, bool),
         normal: Vec3,
         lights: &LocalLights,
@@ -309,24 +342,24 @@ impl<'a> Shader<'a> {
         let mut diffuse = color;
         if !has_light {
             diffuse *= lights.diffuse(normal, sky);
-        } else if material.metallic > 0.0 {
+        } else if finish.metallic > 0.0 {
             // What has this colour in this light.
             base /= lights.diffuse(normal, sky).max(Vec3::splat(1e-6));
         }
-        let reflected = self.reflected((material, base), normal, lights, None);
-        diffuse * reflected.diffuse_share + reflected.added
+        let reflected = self.reflected((finish, base), normal, lights, None);
+        diffuse * (reflected.passed * (1.0 - finish.metallic)) + reflected.added
     }
 
     /// What a material whose base colour is `base` does with lights.
     pub(super) fn reflected(
         &self,
-        (material, base): (&Material, Vec3),
+        (finish, base): (&Finish, Vec3),
         normal: Vec3,
         lights: &LocalLights,
         highlights: Option<Vec3>,
     ) -> Reflected {
         let reflectance = self.prepared.reflectance();
-        lights.reflected(normal, (material, base), &self.scene.sky, reflectance, highlights)
+        lights.reflected(normal, (finish, base), &self.scene.sky, reflectance, highlights)
     }
 
     /// Lists the lights of the covered pixels of pairs of a block, pair by pair and lane by lane.

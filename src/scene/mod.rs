@@ -13,7 +13,7 @@ mod whole;
 pub use builtin::builtin;
 pub use camera::{Camera, Intrinsics, PoseAxes};
 pub use light::Light;
-pub use material::Material;
+pub use material::{Finish, Material, MaterialMaps};
 pub use mesh::Mesh;
 pub(crate) use mesh::{MAX_POSITION, MAX_REPEATS};
 pub use sky::{Environment, Sky};

@@ -55,6 +55,19 @@ pub(crate) struct MapOptions {
     /// Normal map
     #[arg(long, value_name = "FILE", requires = "model")]
     pub(crate) normal: Option<PathBuf>,
+    /// Image of where surfaces are metal; --metallic multiplies it [default: the MTL file's]
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(crate) metallic_map: Option<PathBuf>,
+    /// Image of how rough surfaces are; --roughness multiplies it [default: the MTL file's]
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(crate) roughness_map: Option<PathBuf>,
+    /// Image of how much of the sky's light gets to places, over what the relief hides
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(crate) occlusion_map: Option<PathBuf>,
+    /// Image of the light that surfaces send out; --emissive multiplies it [default: the
+    /// MTL file's]
+    #[arg(long, value_name = "FILE", requires = "model")]
+    pub(crate) emissive_map: Option<PathBuf>,
     /// Which end of the height images is high [default: white-high]
     #[arg(long, value_name = "END", value_parser = one_of(choices::HEIGHT_SENSES), requires = "model")]
     #[serde(with = "choices")]
@@ -75,7 +88,7 @@ pub(crate) struct MapOptions {
     #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::intensity")]
     base_color: Option<Vec3>,
-    /// 0 for a dielectric, 1 for a metal [default: Pm of the MTL file, else 0]
+    /// 0 for a dielectric, 1 for a metal [default: 1 with an image of it, else Pm of the MTL file, else 0]
     #[arg(long, value_name = "M", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::unit")]
     metallic: Option<f32>,
@@ -84,12 +97,13 @@ pub(crate) struct MapOptions {
     #[arg(long, value_name = "S", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::unit")]
     specular: Option<f32>,
-    /// How rough surfaces are: 0 is a mirror, 1 has hardly a highlight [default: Pr of the MTL file,
-    /// else that of Ns, else 1]
+    /// How rough surfaces are: 0 is a mirror, 1 has hardly a highlight [default: 1 with an image of
+    /// it, else Pr of the MTL file, else that of Ns, else 1]
     #[arg(long, value_name = "R", value_parser = values::unit, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::unit")]
     roughness: Option<f32>,
-    /// Light that surfaces send out, linear [default: Ke of the MTL file, else 0]
+    /// Light that surfaces send out, linear [default: Ke of the MTL file, else 0, or 1 with an image
+    /// of it]
     #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::intensity")]
     emissive: Option<Vec3>,
@@ -279,11 +293,22 @@ impl SceneOptions {
 }
 
 impl MapOptions {
+    /// The files that can be given.
+    pub(crate) fn files_mut(&mut self) -> [&mut Option<PathBuf>; 7] {
+        let Self { albedo, height, normal, metallic_map, roughness_map, .. } = self;
+        let (occlusion, emissive) = (&mut self.occlusion_map, &mut self.emissive_map);
+        [albedo, height, normal, metallic_map, roughness_map, occlusion, emissive]
+    }
+
     fn material(&self) -> MaterialOptions {
         MaterialOptions {
             albedo: self.albedo.clone(),
             height: self.height.clone(),
             normal: self.normal.clone(),
+            metallic_map: self.metallic_map.clone(),
+            roughness_map: self.roughness_map.clone(),
+            occlusion_map: self.occlusion_map.clone(),
+            emissive_map: self.emissive_map.clone(),
             height_sense: self.height_sense,
             relief_depth: self.relief_depth,
             normal_y: self.normal_y,

@@ -165,7 +165,7 @@ impl SceneFile {
 
     fn each_path(&mut self, mut change: impl FnMut(&mut PathBuf)) {
         let maps = self.material.values_mut().chain([&mut self.all_materials]);
-        let maps = maps.flat_map(|maps| [&mut maps.albedo, &mut maps.height, &mut maps.normal]);
+        let maps = maps.flat_map(MapOptions::files_mut);
         maps.chain([&mut self.model, &mut self.light.environment]).flatten().for_each(&mut change);
     }
 }
