@@ -14,19 +14,21 @@ mod curved_shadows;
 mod exact;
 mod ground;
 mod open_sky;
+mod outlines;
 mod prepared;
 mod reflections;
 mod shade;
 mod shadows;
 mod skies;
 
+pub(crate) use outlines::Outlines;
 pub(crate) use prepared::PreparedScene;
 pub(crate) use shade::{ShadeScratch, Shader};
 
 use crate::error::Result;
 use crate::frame::{Frame, Pixel};
 use crate::geometry::Geometry;
-use crate::raster::{Drawn, Pool, QuadBlock, Rasterizer, TileGrid};
+use crate::raster::{Drawn, Follow, Pool, QuadBlock, Rasterizer, TileGrid};
 use crate::scene::{Camera, Scene};
 use crate::settings::{Region, Settings};
 
@@ -178,7 +180,12 @@ impl Renderer {
         // Called for each triangle that is seen: only where that makes a difference.
         let group = |triangle| prepared.group(scene, triangle);
         let group = prepared.is_baked().then_some(&group as &(dyn Fn(_) -> _ + Sync));
-        let drawn = Drawn { scene, settings, group };
+        let outlines = settings
+            .has_outlines()
+            .then(|| Outlines::new(scene, prepared, geometry.projection()))
+            .flatten();
+        let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
+        let drawn = Drawn { scene, settings, group, follow };
         let counts = rasterizer.draw(geometry, drawn, &shade, clock, frame);
         if let Some(region) = settings.region {
             // The tiles cover whole blocks, which begin a few pixels before the region.
