@@ -69,7 +69,7 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
     let asked = settings;
     let settings = Settings { msaa, lighting, ..settings.clone() };
     let pool = Pool::default();
-    let shader = Shader::new(scene, &settings, &prepared, &pool);
+    let shader = Shader::new(scene, &settings, &prepared, None, &pool);
     let probe = Probe {
         scene,
         asked,

@@ -40,7 +40,7 @@ impl Renderer {
             .then(|| Outlines::new(scene, prepared, &projection))
             .flatten();
         let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
-        let hits = Hits { scene, prepared, is_traced, projection: &projection };
+        let hits = Hits { scene, prepared, is_traced, outlines, projection: &projection };
         let mut bands = found.bands(&settings);
         let group = |triangle| hits::group(scene, triangle);
         let drawn = Drawn { scene, settings: &settings, group: Some(&group), follow };

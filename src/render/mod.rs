@@ -175,8 +175,6 @@ impl Renderer {
         // All triangles are projected before the first tile begins: its list must be complete.
         geometry.project(scene, settings);
         let projected = clock();
-        let shader = Shader::new(scene, settings, prepared, pool);
-        let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
         // Called for each triangle that is seen: only where that makes a difference.
         let group = |triangle| prepared.group(scene, triangle);
         let group = prepared.is_baked().then_some(&group as &(dyn Fn(_) -> _ + Sync));
@@ -184,6 +182,8 @@ impl Renderer {
             .has_outlines()
             .then(|| Outlines::new(scene, prepared, geometry.projection()))
             .flatten();
+        let shader = Shader::new(scene, settings, prepared, outlines, pool);
+        let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
         let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
         let drawn = Drawn { scene, settings, group, follow };
         let counts = rasterizer.draw(geometry, drawn, &shade, clock, frame);

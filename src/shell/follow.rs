@@ -34,6 +34,8 @@ pub struct ViewRay {
 pub enum Met {
     /// Relief.
     Relief(ReliefHit),
+    /// No relief is there: the polygon itself.
+    Polygon,
     /// Nothing: so far from the eye it leaves the relief through a polygon.
     Nothing(f64),
 }

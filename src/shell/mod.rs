@@ -35,6 +35,7 @@ pub struct Shell {
     /// Of each triangle, seen from the front and from behind: the square of the cosine between
     /// normal and ray below which a ray may pass the relief.
     limits: Vec<[f32; 2]>,
+    is_curved: bool,
 }
 
 /// No neighbour: the border of the mesh, or a crease.
@@ -51,12 +52,13 @@ impl Shell {
         let offsets: Vec<_> = mesh.normals.iter().zip(&mesh.tangents).map(offset).collect();
         let neighbors = neighbors::find(mesh);
         let limits = curvature::limits(mesh, &offsets, &neighbors);
-        Self { offsets, neighbors, limits }
+        let is_curved = limits.iter().flatten().any(|limit| *limit > 0.0);
+        Self { offsets, neighbors, limits, is_curved }
     }
 
     /// Whether rays may pass any of its relief.
-    pub fn has_outline(&self) -> bool {
-        self.limits.iter().flatten().any(|limit| *limit > 0.0)
+    pub fn is_curved(&self) -> bool {
+        self.is_curved
     }
 
     /// Whether a ray from the eye through a triangle may pass its relief.
