@@ -29,7 +29,7 @@ fn main() -> Result<(), basrelief::Error> {
         shown.colors.save(format!("{name}_geometry.png"))?;
         let [u, v] = scene.meshes[0].tangents[scene.meshes[0].tangents.len() / 2];
         let depth = u.cross(v).length().sqrt() * 0.06;
-        let rays = Filter::Truth(Rays { samples: 256 });
+        let rays = Filter::Truth(Rays { samples: or(4, 16) });
         for filter in [Filter::default(), rays] {
             let settings = Settings { filter, ..settings.clone() };
             let mut renderer = Renderer::new(scene.clone(), settings)?;
@@ -41,6 +41,11 @@ fn main() -> Result<(), basrelief::Error> {
                 decibels(&frame, &shown.colors),
                 depths_within(layers.floats(Layer::Depth), &shown.depth, depth * 0.01),
             );
+            for share in [0.5, 0.9, 0.95, 0.99] {
+                let most = displaced::depth_quantile(layers.floats(Layer::Depth), &shown.depth, share);
+                print!("{share} {:.4} ", most / depth);
+            }
+            println!();
             let word = if filter == rays { "truth" } else { "horizon" };
             frame.save(format!("{name}_{word}.png"))?;
         }

@@ -251,3 +251,11 @@ pub fn depths_within(a: &[f32], b: &[f32], most: f32) -> f64 {
     let both = || a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
     both().filter(|(a, b)| (**a - **b).abs() <= most).count() as f64 / both().count() as f64
 }
+
+/// The difference of depths that a share of the pixels that both see does not exceed.
+pub fn depth_quantile(a: &[f32], b: &[f32], share: f64) -> f32 {
+    let both = a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
+    let mut all: Vec<f32> = both.map(|(a, b)| (a - b).abs()).collect();
+    all.sort_by(f32::total_cmp);
+    all[((all.len() - 1) as f64 * share) as usize]
+}
