@@ -72,7 +72,7 @@ fn draw(criterion: &mut Criterion) {
                 b.iter(|| {
                     rasterizer.draw(
                         black_box(&geometry),
-                        Drawn { scene: &scene, settings: &settings, group: None },
+                        Drawn { scene: &scene, settings: &settings, group: None, follow: None },
                         &flat,
                         &|| 0.0,
                         &mut frame,

@@ -5,8 +5,8 @@ use super::layer::Layer;
 use super::place::write_place;
 use super::values::{Band, Layers, Slot};
 use crate::geometry::Projection;
-use crate::raster::{CenterRow, Drawn};
-use crate::render::Renderer;
+use crate::raster::{CenterRow, Drawn, Follow};
+use crate::render::{Outlines, Renderer};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::simd::set_bits;
@@ -35,10 +35,15 @@ impl Renderer {
         };
         geometry.project(scene, &settings);
         let projection = *geometry.projection();
-        let hits = Hits { scene, prepared, is_traced, projection: &projection };
+        let outlines = settings
+            .has_outlines()
+            .then(|| Outlines::new(scene, prepared, &projection))
+            .flatten();
+        let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
+        let hits = Hits { scene, prepared, is_traced, outlines, projection: &projection };
         let mut bands = found.bands(&settings);
         let group = |triangle| hits::group(scene, triangle);
-        let drawn = Drawn { scene, settings: &settings, group: Some(&group) };
+        let drawn = Drawn { scene, settings: &settings, group: Some(&group), follow };
         rasterizer.see_centers(geometry, (drawn, has_quads), &mut bands, &|tile, band| {
             let names_asked = band.slots.iter().any(|(layer, _)| layer.is_id());
             for row in tile.rows() {

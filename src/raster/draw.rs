@@ -5,6 +5,7 @@
 //! allocates nothing for tiles or triangles.
 
 use super::attributes::PlaneMaker;
+use super::behind::{Asked, Follow};
 use super::bin::Bins;
 use super::block::QuadBlock;
 use super::edge::Rect;
@@ -74,7 +75,7 @@ pub fn draw(
     let shade = |block: &QuadBlock, colors: &mut Vec<_>| {
         colors.extend(block.pairs().map(|pair| shade(&pair)));
     };
-    let drawn = Drawn { scene, settings, group: None };
+    let drawn = Drawn { scene, settings, group: None, follow: None };
     Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, frame)
 }
 
@@ -88,6 +89,8 @@ pub struct Drawn<'a> {
     /// A number for each triangle, by the index of its mesh and in it: quads of one number, which
     /// must be of one material, are shaded together. `None` for that of the material.
     pub group: Option<&'a (dyn Fn([u32; 2]) -> u32 + Sync)>,
+    /// What follows rays behind polygons; `None` where all see their nearest polygon.
+    pub follow: Option<&'a dyn Follow>,
 }
 
 impl Rasterizer {
@@ -98,12 +101,12 @@ impl Rasterizer {
     pub fn draw<P: Pixel>(
         &mut self,
         geometry: &Geometry,
-        Drawn { scene, settings, group }: Drawn,
+        drawn: Drawn,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
         clock: &(dyn Fn() -> f64 + Sync),
         frame: &mut Frame<P>,
     ) -> RasterStats {
-        let grid = TileGrid::new(settings);
+        let grid = TileGrid::new(drawn.settings);
         let start = clock();
         self.bins.fill(geometry, &grid);
         let binning_ms = clock() - start;
@@ -115,8 +118,8 @@ impl Rasterizer {
         }
         // Paint the tiles in parallel. Only times and counts come back to be summed, so the order
         // in which threads end shows nowhere in the picture.
-        let painter = Painter { geometry, scene, settings, group, grid, bins: &self.bins, clock };
-        let development = Development::of(settings, P::IS_PICTURE);
+        let painter = Painter { geometry, drawn, grid, bins: &self.bins, clock };
+        let development = Development::of(drawn.settings, P::IS_PICTURE);
         let scratches = &self.scratches;
         let mut rows = rows_by_tile(frame, &grid);
         let tiles = rows
@@ -154,9 +157,7 @@ fn rows_by_tile<'a, P>(frame: &'a mut Frame<P>, grid: &TileGrid) -> Vec<&'a mut 
 /// What all tiles share.
 pub(super) struct Painter<'a> {
     pub(super) geometry: &'a Geometry,
-    pub(super) scene: &'a Scene,
-    pub(super) settings: &'a Settings,
-    pub(super) group: Option<&'a (dyn Fn([u32; 2]) -> u32 + Sync)>,
+    pub(super) drawn: Drawn<'a>,
     pub(super) grid: TileGrid,
     pub(super) bins: &'a Bins,
     pub(super) clock: &'a (dyn Fn() -> f64 + Sync),
@@ -215,22 +216,32 @@ impl Painter<'_> {
     }
 
     /// Lists the quads that the tile sees.
-    fn see(&self, rect: &Rect, Scratch { list, visibility, quads, .. }: &mut Scratch) {
+    fn see(&self, rect: &Rect, scratch: &mut Scratch) {
         // The number of samples is a constant of the code below, so that its arrays have a size and
         // its loops a length that the compiler knows.
-        match self.settings.msaa {
-            8 => {
-                visibility.draw::<8>(self.geometry, list, rect);
-                gather::<8>(visibility, quads);
-            }
-            4 => {
-                visibility.draw::<4>(self.geometry, list, rect);
-                gather::<4>(visibility, quads);
-            }
-            _ => {
-                visibility.draw::<1>(self.geometry, list, rect);
-                gather::<1>(visibility, quads);
-            }
+        match self.drawn.settings.msaa {
+            8 => self.see_samples::<8>(rect, scratch),
+            4 => self.see_samples::<4>(rect, scratch),
+            _ => self.see_samples::<1>(rect, scratch),
+        }
+        let Scratch { visibility, quads, .. } = scratch;
+        match self.drawn.settings.msaa {
+            8 => gather::<8>(visibility, quads),
+            4 => gather::<4>(visibility, quads),
+            _ => gather::<1>(visibility, quads),
+        }
+    }
+
+    /// Finds what the samples of a tile see.
+    pub(super) fn see_samples<const S: usize>(
+        &self,
+        rect: &Rect,
+        Scratch { list, visibility, followed, .. }: &mut Scratch,
+    ) {
+        visibility.draw::<S>(self.geometry, list, rect);
+        if let Some(follow) = self.drawn.follow {
+            let asked = Asked { geometry: self.geometry, list, rect, follow };
+            followed.find::<S>(visibility, &asked);
         }
     }
 
@@ -249,8 +260,8 @@ impl Painter<'_> {
             *slot = triangles.len() as u32;
             let ScreenTriangle { mesh, triangle, .. } = *self.geometry.triangle(index);
             triangles.push([mesh, triangle]);
-            let material = self.scene.meshes[mesh as usize].material as u32;
-            let group = self.group.map_or(material, |group| group([mesh, triangle]));
+            let material = self.drawn.scene.meshes[mesh as usize].material as u32;
+            let group = self.drawn.group.map_or(material, |group| group([mesh, triangle]));
             grounds.push([material, group]);
         }
         // From here on a quad names its triangle by the slot of its planes.
@@ -262,7 +273,7 @@ impl Painter<'_> {
         if planes.len() < triangles.len() {
             planes.resize_with(triangles.len(), AttributePlanes::default);
         }
-        PlaneMaker::new(self.geometry, self.scene, self.settings)
+        PlaneMaker::new(self.geometry, self.drawn.scene, self.drawn.settings)
             .fill(&mut planes[..triangles.len()], triangles);
     }
 
@@ -276,7 +287,7 @@ impl Painter<'_> {
     ) -> u64 {
         let Scratch { quads, planes, grounds, colors, canvas, .. } = scratch;
         // One over a power of two: shares of a pixel add up to 1 without rounding.
-        let share = 1.0 / self.settings.msaa as f32;
+        let share = 1.0 / self.drawn.settings.msaa as f32;
         let block_of = |quad: &SeenQuad| quad.origin.map(|c| usize::from(c) / SHADED_BLOCK);
         let mut num_shaded = 0;
         // The list goes block by block, so each block is one run of it.
@@ -306,7 +317,7 @@ impl Painter<'_> {
     /// Whether the triangle is all that the quad's samples see.
     #[inline(always)]
     fn is_whole(&self, quad: &SeenQuad) -> bool {
-        quad.coverage == [self.settings.msaa as u8; 4]
+        quad.coverage == [self.drawn.settings.msaa as u8; 4]
     }
 
     /// Whether every sample of the tile sees a triangle.
@@ -314,11 +325,11 @@ impl Painter<'_> {
         // A sample counts for one triangle at most, so only full coverage reaches the product.
         let num_seen: u64 = quads.iter().flat_map(|quad| quad.coverage).map(u64::from).sum();
         let [width, height] = [0, 1].map(|i| (rect.max[i] - rect.min[i]) as u64);
-        num_seen == width * height * u64::from(self.settings.msaa)
+        num_seen == width * height * u64::from(self.drawn.settings.msaa)
     }
 
     fn background(&self) -> [f32; 4] {
-        let [r, g, b, a] = self.scene.background;
+        let [r, g, b, a] = self.drawn.scene.background;
         [r * a, g * a, b * a, a]
     }
 }

@@ -15,19 +15,21 @@ mod exact;
 mod ground;
 mod mapped;
 mod open_sky;
+mod outlines;
 mod prepared;
 mod reflections;
 mod shade;
 mod shadows;
 mod skies;
 
+pub(crate) use outlines::Outlines;
 pub(crate) use prepared::PreparedScene;
 pub(crate) use shade::{ShadeScratch, Shader};
 
 use crate::error::Result;
 use crate::frame::{Frame, Pixel};
 use crate::geometry::Geometry;
-use crate::raster::{Drawn, Pool, QuadBlock, Rasterizer, TileGrid};
+use crate::raster::{Drawn, Follow, Pool, QuadBlock, Rasterizer, TileGrid};
 use crate::scene::{Camera, Scene};
 use crate::settings::{Region, Settings};
 
@@ -174,12 +176,17 @@ impl Renderer {
         // All triangles are projected before the first tile begins: its list must be complete.
         geometry.project(scene, settings);
         let projected = clock();
-        let shader = Shader::new(scene, settings, prepared, pool);
-        let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
         // Called for each triangle that is seen: only where that makes a difference.
         let group = |triangle| prepared.group(scene, triangle);
         let group = prepared.is_baked().then_some(&group as &(dyn Fn(_) -> _ + Sync));
-        let drawn = Drawn { scene, settings, group };
+        let outlines = settings
+            .has_outlines()
+            .then(|| Outlines::new(scene, prepared, geometry.projection()))
+            .flatten();
+        let shader = Shader::new(scene, settings, prepared, outlines, pool);
+        let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
+        let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
+        let drawn = Drawn { scene, settings, group, follow };
         let counts = rasterizer.draw(geometry, drawn, &shade, clock, frame);
         if let Some(region) = settings.region {
             // The tiles cover whole blocks, which begin a few pixels before the region.

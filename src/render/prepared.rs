@@ -8,8 +8,9 @@ use crate::filter::Prepared;
 use crate::light::Disc;
 use crate::light::exact::{Ceiling, Occluders};
 use crate::light::reflection::Reflectance;
-use crate::scene::{Light, Material, Scene};
+use crate::scene::{Light, Material, Mesh, Scene};
 use crate::settings::{Lighting, Settings};
+use crate::shell::Shell;
 use crate::texture::Surface;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -39,6 +40,8 @@ pub(crate) struct PreparedScene {
     ceilings: OnceLock<Vec<Ceiling>>,
     /// The same of the sky.
     skies: OnceLock<Skies>,
+    /// The relief of each mesh that has one, for rays that may pass it or meet another mesh in it.
+    shells: OnceLock<Vec<Option<Shell>>>,
 }
 
 impl PreparedScene {
@@ -77,15 +80,29 @@ impl PreparedScene {
             })
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
-        let (reflectance, occluders, ceilings, skies) = Default::default();
+        let (reflectance, occluders, ceilings, skies, shells) = Default::default();
         let (baked, mapped) = (None, None);
-        Self { surfaces, flat, of_material, baked, mapped, reflectance, occluders, ceilings, skies }
+        Self {
+            surfaces,
+            flat,
+            of_material,
+            baked,
+            mapped,
+            reflectance,
+            occluders,
+            ceilings,
+            skies,
+            shells,
+        }
     }
 
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
     /// it.
     pub(crate) fn make_ready(&mut self, scene: &Scene, settings: &Settings) {
         let is_lit = settings.lighting == Lighting::Lit;
+        if settings.has_outlines() {
+            self.shells(scene);
+        }
         if is_lit {
             self.reflectance();
         }
@@ -147,6 +164,18 @@ impl PreparedScene {
     /// The triangles of the scene that this was made for.
     pub(crate) fn occluders(&self, scene: &Scene) -> &Occluders {
         self.occluders.get_or_init(|| Occluders::new(scene))
+    }
+
+    /// The relief of each mesh that has one.
+    pub(crate) fn shells(&self, scene: &Scene) -> &[Option<Shell>] {
+        self.shells.get_or_init(|| {
+            let shell = |mesh: &Mesh| {
+                let field = self.of_material(mesh.material, true)?.field()?;
+                let is_textured = !mesh.tex_coords.is_empty();
+                is_textured.then(|| Shell::new(mesh, field.relief_depth))
+            };
+            scene.meshes.par_iter().map(shell).collect()
+        })
     }
 
     /// What may hide each sun from curved surfaces; nothing else than suns shines there.

@@ -21,6 +21,10 @@ pub(crate) struct FilterOptions {
     /// Whether the relief is traced; off draws flat polygons [default: on]
     #[arg(long, value_name = "on|off", hide_possible_values = true, value_parser = one_of(ON_OFF))]
     pub(super) parallax: Option<bool>,
+    /// Whether rays may pass the relief at outlines of curved meshes, and meshes that meet a relief
+    /// are cut by it; off: both by its polygons [default: on]
+    #[arg(long, value_name = "on|off", hide_possible_values = true, value_parser = one_of(ON_OFF))]
+    pub(super) silhouette: Option<bool>,
     /// Which texture coordinates a pixel's ellipse comes from [default: relief]
     #[arg(long, value_name = "OF", value_parser = one_of(choices::DERIVATIVES))]
     #[serde(with = "choices")]
