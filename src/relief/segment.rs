@@ -52,9 +52,12 @@ impl HeightField {
             let whole = if self.is_clamped { 0.0 } else { (start[i] / size).floor() * size };
             (start[i] - whole).clamp(-1e9, 1e9)
         });
-        let piece =
-            Piece { field: self, start, step, depth: [from.depth, to.depth - from.depth] };
-        if step.iter().chain(&piece.depth).all(|c| c.is_finite()) { piece.first_hit() } else { Some(0.0) }
+        let piece = Piece { field: self, start, step, depth: [from.depth, to.depth - from.depth] };
+        if step.iter().chain(&piece.depth).all(|c| c.is_finite()) {
+            piece.first_hit()
+        } else {
+            Some(0.0)
+        }
     }
 }
 
@@ -68,7 +71,8 @@ impl Piece<'_> {
         for _ in 0..MAX_STEPS {
             let folded = [0, 1].map(|i| field.fold(i, cell[i].clamp(-1 << 30, 1 << 30) as i32));
             // Beyond the edges of a clamped pattern there are cells alone.
-            if field.is_clamped && (0..2).any(|i| folded[i] < 0 || i64::from(folded[i]) != cell[i]) {
+            if field.is_clamped && (0..2).any(|i| folded[i] < 0 || i64::from(folded[i]) != cell[i])
+            {
                 level = 0;
             }
             let node = [0, 1].map(|i| self.node(i, cell[i], folded[i], level));

@@ -60,9 +60,11 @@ impl<'a> Outlines<'a> {
         let mesh = &self.scene.meshes[mesh as usize];
         let corners = mesh.triangles[hit.triangle as usize].map(|i| i as usize);
         let mean = |of: &dyn Fn(usize) -> Vec3| {
-            corners.iter().zip(hit.shares).fold(DVec3::ZERO, |sum, (i, share)| {
-                sum + of(*i).as_dvec3() * share
-            }).as_vec3()
+            corners
+                .iter()
+                .zip(hit.shares)
+                .fold(DVec3::ZERO, |sum, (i, share)| sum + of(*i).as_dvec3() * share)
+                .as_vec3()
         };
         SurfacePoint {
             position: mean(&|i| mesh.positions[i]),
