@@ -51,6 +51,9 @@ pub trait Follow: Sync {
     /// The corners of a triangle of a mesh with relief where that is deepest, along the view as the
     /// [`Geometry`] has it: x, y and w.
     fn deepest(&self, triangle: [u32; 2]) -> [Vec3; 3];
+    /// Whether the ray through a place of the screen, in pixels, surely hits the relief of a triangle,
+    /// and a distance along the view by which it has: quicker than to follow it.
+    fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32>;
     /// What the ray through a place of the screen, in pixels, meets behind a triangle.
     fn follow(&self, triangle: [u32; 2], place: [f64; 2]) -> Behind;
 }
@@ -69,6 +72,8 @@ struct Followed {
     best: f32x8,
     best_triangle: u32x8,
     best_polygon: f32x8,
+    /// A bit for each where what was met may be nearer than that.
+    is_bound: u8,
     /// The side of a mesh by which a ray came out of it last, and where: up to there that side is
     /// within the shell that the ray passed, and is not seen.
     passed: u32x8,
@@ -98,6 +103,25 @@ impl Asked<'_> {
     fn triangle(&self, local: usize) -> [u32; 2] {
         let triangle = self.geometry.triangle(self.list[local]);
         [triangle.mesh, triangle.triangle]
+    }
+}
+
+impl Followed {
+    /// A lane's ray meets, behind its next polygon, a surface at a distance along the view.
+    fn meet(&mut self, lane: usize, local: u32, w: f32) {
+        let polygon = self.next.as_array()[lane];
+        // Not before its polygon, whatever is rounded.
+        let depth = (1.0 / w).min(polygon);
+        if depth > self.best.as_array()[lane] {
+            self.best.as_mut_array()[lane] = depth;
+            self.best_triangle.as_mut_array()[lane] = local;
+            self.best_polygon.as_mut_array()[lane] = polygon;
+        }
+    }
+
+    /// What a lane's ray has met is at a distance along the view, nearer than its bound.
+    fn nearer(&mut self, lane: usize, w: f32) {
+        self.best.as_mut_array()[lane] = (1.0 / w).min(self.best_polygon.as_array()[lane]);
     }
 }
 
@@ -153,6 +177,7 @@ impl FollowScratch {
                 best: none,
                 best_triangle: u32x8::splat(NONE),
                 best_polygon: none,
+                is_bound: 0,
                 passed: u32x8::splat(NONE),
                 passed_at: none,
             }
@@ -202,23 +227,35 @@ impl FollowScratch {
 
     /// Follows the rays of the samples that are asked, each behind its next polygon.
     fn follow_all<const S: usize>(&mut self, buffer: &VisibilityBuffer, asked: &Asked) {
+        let (sides, may_be_passed) = (&self.sides, &self.may_be_passed);
         for (at, samples) in self.samples.iter_mut().enumerate() {
             for lane in set_bits(samples.is_asked.to_bitmask()) {
                 let local = samples.triangle.as_array()[lane];
-                let polygon = samples.next.as_array()[lane];
-                let triangle = asked.triangle(local as usize);
-                match asked.follow.follow(triangle, buffer.place::<S>(at, lane)) {
-                    Behind::Surface(w) => {
-                        // Not before its polygon, whatever is rounded.
-                        let depth = (1.0 / w).min(polygon);
-                        if depth > samples.best.as_array()[lane] {
-                            samples.best.as_mut_array()[lane] = depth;
-                            samples.best_triangle.as_mut_array()[lane] = local;
-                            samples.best_polygon.as_mut_array()[lane] = polygon;
-                        }
+                let (triangle, place) =
+                    (asked.triangle(local as usize), buffer.place::<S>(at, lane));
+                let is_first = samples.best_triangle.as_array()[lane] == NONE;
+                let is_probed = is_first && may_be_passed[local as usize];
+                let probed = if is_probed { asked.follow.probe(triangle, place) } else { None };
+                if let Some(w) = probed {
+                    samples.is_bound |= 1 << lane;
+                    samples.meet(lane, local, w);
+                    continue;
+                }
+                if samples.is_bound >> lane & 1 != 0 {
+                    // Another polygon is nearer than the bound: now what is met must be known.
+                    samples.is_bound &= !(1 << lane);
+                    let best = samples.best_triangle.as_array()[lane] as usize;
+                    if let Behind::Surface(w) = asked.follow.follow(asked.triangle(best), place) {
+                        samples.nearer(lane, w);
                     }
+                    if samples.best.as_array()[lane] >= samples.next.as_array()[lane] {
+                        continue;
+                    }
+                }
+                match asked.follow.follow(triangle, place) {
+                    Behind::Surface(w) => samples.meet(lane, local, w),
                     Behind::Nothing(w) => {
-                        samples.passed.as_mut_array()[lane] = self.sides[local as usize] ^ 1;
+                        samples.passed.as_mut_array()[lane] = sides[local as usize] ^ 1;
                         samples.passed_at.as_mut_array()[lane] = (1.0 / w) * (1.0 - ROUNDING);
                     }
                 }
