@@ -160,11 +160,11 @@ pub(crate) struct CameraOptions {
     /// Where the camera is and how it lies: the 4x4 matrix from its axes to the world, 16 numbers
     /// row by row; in place of --eye, --target and --up
     #[arg(long, value_name = "M11,M12,...,M44", value_parser = values::pose, allow_hyphen_values = true, conflicts_with_all = ["eye", "target", "up"])]
-    #[serde(skip)]
+    #[serde(deserialize_with = "file_values::pose")]
     pose: Option<Pose>,
     /// The axes of --pose [default: opencv]
     #[arg(long, value_name = "WHOSE", value_parser = one_of(choices::POSE_AXES), requires = "pose")]
-    #[serde(skip)]
+    #[serde(with = "choices")]
     pose_axes: Option<PoseAxes>,
     /// Distance from the eye before which nothing is drawn, in the scene's units
     #[arg(long, value_name = "D", value_parser = values::above_zero, allow_hyphen_values = true)]
@@ -347,6 +347,33 @@ impl From<&Camera> for CameraOptions {
 }
 
 impl CameraOptions {
+    /// Refuses what contradicts itself; on the command line the options' own rules do.
+    pub(crate) fn check(&self) -> Result<(), &'static str> {
+        let is_placed = self.eye.is_some() || self.target.is_some() || self.up.is_some();
+        match self.pose {
+            Some(_) if is_placed => Err("a pose takes the place of eye, target and up"),
+            None if self.pose_axes.is_some() => Err("pose-axes needs a pose"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Drops a pose where `over` says where the eye is, and the other way round.
+    pub(crate) fn make_way_for(&mut self, over: &Self) {
+        if over.pose.is_some() {
+            (self.eye, self.target, self.up) = (None, None, None);
+        }
+        if over.eye.is_some() || over.target.is_some() || over.up.is_some() {
+            (self.pose, self.pose_axes) = (None, None);
+        }
+    }
+
+    /// A camera with what these say.
+    pub(crate) fn placed(&self, start: &Camera) -> Camera {
+        let mut camera = *start;
+        self.place(&mut camera);
+        camera
+    }
+
     fn place(&self, camera: &mut Camera) {
         camera.eye = self.eye.unwrap_or(camera.eye);
         camera.target = self.target.unwrap_or(camera.target);
