@@ -246,6 +246,11 @@ fn sparse_accessors_replace_single_elements() {
     assert_eq!(loaded(&glb).scene.meshes[0].positions[2], Vec3::splat(3.0));
     binary.accessors[0] = binary.accessors[0].replace(r#""count":1"#, r#""count":2"#);
     assert!(refused(&binary.glb(&square("{}", ""))).contains("accessor 0 reaches beyond"));
+    // Without bytes behind them, zeros: not more than a file of this size can have vertices.
+    binary.accessors[0] = r#"{"count":4,"componentType":5126,"type":"VEC3"}"#.into();
+    loaded(&binary.glb(&square("{}", "")));
+    binary.accessors[0] = binary.accessors[0].replace("4,", "4000,");
+    assert!(refused(&binary.glb(&square("{}", ""))).contains("4000 elements of no bytes"));
 }
 
 #[test]

@@ -78,7 +78,11 @@ impl Document {
                 .iter(size, count)
                 .map(element)
                 .collect(),
-            None => vec![[T::default(); N]; count],
+            // Zeros, of as many vertices as other accessors have in the buffers.
+            None if count <= self.buffers.iter().map(Vec::len).sum() => {
+                vec![[T::default(); N]; count]
+            }
+            None => return Err(format!("accessor {index} has {count} elements of no bytes")),
         };
         if let Some(sparse) = &accessor.sparse {
             self.replace(&mut values, sparse, size, element)

@@ -27,9 +27,11 @@ use crate::texture::Wrap;
 use document::{Document, Reasoned};
 use glam::{Vec2, Vec3};
 use materials::{GltfMaterial, Height, Picture, TextureRef};
-use nodes::Placed;
+use nodes::{Instance, Placed};
 use primitives::Piece;
 use rayon::prelude::*;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 use tangents::with_frames;
 
@@ -90,18 +92,29 @@ fn pieces(
     options: &LoadOptions,
 ) -> Result<Vec<Piece>> {
     let placements: Vec<_> = materials.iter().map(GltfMaterial::placement).collect();
+    // Instances share what is read of a mesh.
+    let mut of_meshes: HashMap<usize, Vec<Piece>> = HashMap::new();
     let mut pieces = Vec::new();
     let (mut num_triangles, mut num_vertices) = (0, 0);
-    for instance in &placed.instances {
-        let found = document.pieces(instance, &placements);
-        let found = found.map_err(|reason| Error::file(&document.path, reason))?;
-        for piece in found {
+    let path = document.path.clone();
+    for Instance { mesh, node, to_world } in &placed.instances {
+        let refuse = |reason| Error::file(&path, reason);
+        let of_mesh = match of_meshes.entry(mesh.value()) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => new.insert(document.pieces(*mesh, &placements).map_err(refuse)?),
+        };
+        let name = document.root.get(*node).and_then(|node| node.name.as_ref());
+        for piece in of_mesh {
+            let mut piece = piece
+                .placed(to_world)
+                .map_err(|reason| refuse(format!("mesh {mesh} of node {node} {reason}")))?;
+            piece.mesh.name = name.unwrap_or(&piece.mesh.name).clone();
             num_triangles += piece.mesh.triangles.len() as u64;
             num_vertices += piece.mesh.positions.len() as u64;
             for (num, what) in [(num_triangles, "triangles"), (num_vertices, "vertices")] {
                 if num > options.max_triangles {
                     let reason = format!("more than {} {what}", options.max_triangles);
-                    return Err(Error::limit(&document.path, reason, "max_triangles"));
+                    return Err(Error::limit(&path, reason, "max_triangles"));
                 }
             }
             pieces.push(piece);

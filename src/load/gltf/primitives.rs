@@ -2,7 +2,6 @@
 
 use super::document::{Document, Reasoned};
 use super::materials::Placement;
-use super::nodes::Instance;
 use crate::scene::{MAX_POSITION, MAX_REPEATS, Mesh};
 use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
@@ -12,7 +11,8 @@ use gltf::json::{Accessor, Index};
 /// Where an index breaks a strip or fan into two: none in glTF, but writers know it from OpenGL.
 const RESTARTS: [u32; 3] = [0xff, 0xffff, u32::MAX];
 
-/// A primitive in the world.
+/// A primitive, in its mesh or in the world.
+#[derive(Clone, Debug)]
 pub(super) struct Piece {
     /// Without tangents; normals that the file does not have are zero.
     pub(super) mesh: Mesh,
@@ -21,27 +21,25 @@ pub(super) struct Piece {
 }
 
 impl Document {
-    /// The triangles of an instance's primitives; `placement` says where a material's textures lie,
-    /// `num_materials` is the material of what has none.
+    /// The triangles of a mesh's primitives, as they lie in the mesh; `placements` say where the
+    /// textures of materials lie, the last of what has none.
     ///
     /// # Errors
     /// Names the mesh, the primitive and what is wrong with it.
     pub(super) fn pieces(
         &mut self,
-        instance: &Instance,
+        index: Index<gltf::json::Mesh>,
         placements: &[Placement],
     ) -> Reasoned<Vec<Piece>> {
-        let index = instance.mesh;
         let mesh = self.root.get(index).ok_or_else(|| format!("mesh {index} does not exist"))?;
-        let name = self.root.get(instance.node).and_then(|node| node.name.as_ref());
-        let name = name.or(mesh.name.as_ref()).cloned().unwrap_or_else(|| format!("mesh {index}"));
+        let name = mesh.name.clone().unwrap_or_else(|| format!("mesh {index}"));
         let (mut pieces, mut warnings) = (Vec::new(), Vec::new());
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let Some(mode) = triangles_mode(primitive) else {
                 warnings.push(format!("mesh {index} has points or lines; left out"));
                 continue;
             };
-            let piece = self.piece(primitive, mode, placements, &instance.to_world);
+            let piece = self.piece(primitive, mode, placements);
             let mut piece =
                 piece.map_err(|reason| format!("mesh {index}, primitive {i}: {reason}"))?;
             piece.mesh.name.clone_from(&name);
@@ -58,7 +56,6 @@ impl Document {
         primitive: &Primitive,
         mode: Mode,
         placements: &[Placement],
-        to_world: &DAffine3,
     ) -> Reasoned<Piece> {
         let get = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
         let positions = get(Semantic::Positions).ok_or("has no positions")?;
@@ -80,8 +77,6 @@ impl Document {
         let mesh = Mesh { material, triangles, positions, tex_coords, normals, ..Mesh::default() };
         let mut piece = Piece { mesh, tangents };
         piece.drop_unused();
-        piece.move_to(to_world);
-        piece.check()?;
         Ok(piece)
     }
 
@@ -162,6 +157,17 @@ impl Piece {
         keep(&mut mesh.tex_coords, &old_of_new);
         keep(&mut mesh.normals, &old_of_new);
         keep(tangents, &old_of_new);
+    }
+
+    /// The piece at a place in the world.
+    ///
+    /// # Errors
+    /// Says which of its numbers are out of range there.
+    pub(super) fn placed(&self, to_world: &DAffine3) -> Reasoned<Self> {
+        let mut piece = self.clone();
+        piece.move_to(to_world);
+        piece.check()?;
+        Ok(piece)
     }
 
     fn move_to(&mut self, to_world: &DAffine3) {

@@ -5,6 +5,7 @@
 //! file gives it or as `MikkTSpace` makes it. The axes keep the lengths of the derivatives.
 
 use super::primitives::Piece;
+use crate::decode::contain;
 use crate::scene::Mesh;
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use glam::{Vec3, Vec4};
@@ -42,10 +43,10 @@ fn framed([u, v]: [Vec3; 2], normal: Vec3, tangent: Vec4) -> [Vec3; 2] {
 /// A tangent for each corner of each triangle.
 fn mikktspace(mesh: &Mesh) -> Vec<Vec4> {
     let mut corners = Corners { mesh, tangents: vec![Vec4::ZERO; mesh.triangles.len() * 3] };
-    match generate_tangents::<_, ExactOps>(&mut corners) {
-        Ok(()) => corners.tangents,
-        // No error is known today; the frames of the derivatives serve.
-        Err(_) => vec![Vec4::ZERO; corners.tangents.len()],
+    // Where it gives up, the frames of the derivatives serve.
+    match contain(|| generate_tangents::<_, ExactOps>(&mut corners)) {
+        Some(Ok(())) => corners.tangents,
+        _ => vec![Vec4::ZERO; mesh.triangles.len() * 3],
     }
 }
 
