@@ -21,12 +21,12 @@ use std::path::PathBuf;
 
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct SceneOptions {
-    /// What to draw: an OBJ file with its MTL files and images, or a scene file (TOML, see
-    /// --save-scene), which other options override; without one, a built-in scene
+    /// What to draw: an OBJ file with its MTL files and images, a glTF file (.gltf, .glb), or a scene
+    /// file (TOML, see --save-scene), which other options override; without one, a built-in scene
     #[arg(value_name = "SCENE")]
     pub(crate) model: Option<PathBuf>,
     /// Where SCENE has no normals: faces that meet at more than this angle, 0 to 180 degrees, show
-    /// an edge [default: 60]
+    /// an edge [default: 60, of glTF 0]
     #[arg(long, value_name = "DEG", value_parser = values::crease_angle, allow_hyphen_values = true, requires = "model")]
     pub(crate) crease_angle: Option<f32>,
     #[command(flatten)]
@@ -204,10 +204,11 @@ pub(crate) struct LightOptions {
 }
 
 impl SceneOptions {
-    /// How a picture of the scene is where no option says so: the built-in scene is lit, others where
-    /// a light is given.
+    /// How a picture of the scene is where no option says so: the built-in scene and glTF, whose
+    /// materials are made for it, are lit, others where a light is given.
     pub(crate) fn look(&self) -> Look {
-        match self.model {
+        match &self.model {
+            Some(model) if load::is_gltf(model) => Look { is_lit: true, tone: Tone::Neutral },
             None => Look { is_lit: true, tone: Tone::Neutral },
             Some(_) => Look { is_lit: self.has_lights(), ..Look::default() },
         }
@@ -282,7 +283,7 @@ impl SceneOptions {
                 .collect(),
             keep_normals: is_lit,
             aspect: settings.width as f32 / settings.height as f32,
-            crease_angle: self.crease_angle.unwrap_or(default.crease_angle),
+            crease_angle: self.crease_angle,
             allow_outside: limits.allow_outside.unwrap_or(default.allow_outside),
             max_image_side: limits.max_image_side.unwrap_or(default.max_image_side),
             max_image_mib: limits.max_image_mib.unwrap_or(default.max_image_mib),
