@@ -76,7 +76,8 @@ pub fn draw(
         colors.extend(block.pairs().map(|pair| shade(&pair)));
     };
     let drawn = Drawn { scene, settings, group: None, follow: None };
-    Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, frame)
+    frame.fit(TileGrid::new(settings).area.size().map(|side| side as u32));
+    Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, &mut frame.pixels)
 }
 
 /// What is drawn, and how.
@@ -96,32 +97,26 @@ pub struct Drawn<'a> {
 impl Rasterizer {
     /// Draws the triangles of `geometry`, which must have been projected from `scene` under
     /// `settings`. `shade` appends the linear red, green and blue of eight pixels for each pair of
-    /// a block, which must depend on that block only. `clock` gives milliseconds. The frame is
-    /// resized to the [area](TileGrid::area) of the tiles and overwritten.
+    /// a block, which must depend on that block only. `clock` gives milliseconds. The pixels, row by
+    /// row those of the [area](TileGrid::area) of the tiles, are overwritten.
     pub fn draw<P: Pixel>(
         &mut self,
         geometry: &Geometry,
         drawn: Drawn,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
         clock: &(dyn Fn() -> f64 + Sync),
-        frame: &mut Frame<P>,
+        pixels: &mut [P],
     ) -> RasterStats {
         let grid = TileGrid::new(drawn.settings);
         let start = clock();
         self.bins.fill(geometry, &grid);
         let binning_ms = clock() - start;
-        [frame.width, frame.height] = grid.area.size().map(|side| side as u32);
-        let num_pixels = frame.width as usize * frame.height as usize;
-        if frame.pixels.len() != num_pixels {
-            // `vec![0; n]` is zeroed lazily by the system, on the thread that first touches a page.
-            frame.pixels = vec![P::default(); num_pixels];
-        }
         // Paint the tiles in parallel. Only times and counts come back to be summed, so the order
         // in which threads end shows nowhere in the picture.
         let painter = Painter { geometry, drawn, grid, bins: &self.bins, clock };
         let development = Development::of(drawn.settings, P::IS_PICTURE);
         let scratches = &self.scratches;
-        let mut rows = rows_by_tile(frame, &grid);
+        let mut rows = rows_by_tile(pixels, &grid);
         let tiles = rows
             .par_chunks_mut(grid.tile_size as usize)
             .enumerate()
@@ -136,12 +131,14 @@ impl Rasterizer {
 
 /// The frame's rows cut into tiles: `tile_size` slices a tile, tile after tile; empty ones below
 /// the frame's last row.
-fn rows_by_tile<'a, P>(frame: &'a mut Frame<P>, grid: &TileGrid) -> Vec<&'a mut [P]> {
-    let (width, tile_size) = (frame.width as usize, grid.tile_size as usize);
+fn rows_by_tile<'a, P>(pixels: &'a mut [P], grid: &TileGrid) -> Vec<&'a mut [P]> {
+    let [width, height] = grid.area.size().map(|side| side as usize);
+    assert_eq!(pixels.len(), width * height, "the pixels must be those of the tiles");
+    let tile_size = grid.tile_size as usize;
     let mut slices = Vec::with_capacity(grid.num() * tile_size);
     let mut rows = Vec::with_capacity(tile_size);
     // Take from every row of a band the piece that belongs to the next tile.
-    for band in frame.pixels.chunks_mut(width * tile_size) {
+    for band in pixels.chunks_mut(width * tile_size) {
         rows.clear();
         rows.extend(band.chunks_mut(width).map(|row| row.chunks_mut(tile_size)));
         for _ in 0..grid.num_tiles[0] {

@@ -96,6 +96,12 @@ impl PreparedScene {
         }
     }
 
+    /// Forgets what is made of meshes, which have changed.
+    pub(crate) fn forget_meshes(&mut self) {
+        self.baked = None;
+        (self.occluders, self.ceilings, self.skies, self.shells) = Default::default();
+    }
+
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
     /// it.
     pub(crate) fn make_ready(&mut self, scene: &Scene, settings: &Settings) {
