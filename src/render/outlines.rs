@@ -86,7 +86,11 @@ impl<'a> Outlines<'a> {
         let Some((shell, field)) = shell.zip(field()) else { return Met::Polygon };
         let eye = self.scene.camera.eye.as_dvec3();
         let ray = ViewRay { eye, direction: self.projection.direction(place) };
-        if PROBES { shell.probe(mesh, field, triangle, &ray) } else { shell.follow(mesh, field, triangle, &ray) }
+        if PROBES {
+            shell.probe(mesh, field, triangle, &ray)
+        } else {
+            shell.follow(mesh, field, triangle, &ray)
+        }
     }
 }
 

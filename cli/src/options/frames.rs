@@ -126,10 +126,10 @@ impl FramesOptions {
             ("--shards", self.shards.is_some()),
         ];
         if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
-            return Err(
-                format!("{option}: needs many frames, from --turntable, --camera-path or --cameras")
-                    .into()
-            );
+            return Err(format!(
+                "{option}: needs many frames, from --turntable, --camera-path or --cameras"
+            )
+            .into());
         }
         let output = output.unwrap_or(Path::new("basrelief.png")).into();
         Ok(Sequence { motion: Motion::Still, numbers: vec![1], output, remark: None })
