@@ -164,24 +164,26 @@ impl FollowScratch {
         let none = f32x8::splat(FARTHEST);
         let may_be_passed = &self.may_be_passed;
         self.samples.clear();
-        self.samples.extend(buffer.inverse_w.iter().zip(&buffer.triangles).map(|(depth, triangles)| {
-            let is_asked = u32x8::new(triangles.to_array().map(|local| {
-                if local != NONE && may_be_passed[local as usize] { u32::MAX } else { 0 }
-            }));
-            Followed {
-                is_followed: is_asked,
-                is_asked,
-                last: *depth,
-                next: *depth,
-                triangle: *triangles,
-                best: none,
-                best_triangle: u32x8::splat(NONE),
-                best_polygon: none,
-                is_bound: 0,
-                passed: u32x8::splat(NONE),
-                passed_at: none,
-            }
-        }));
+        self.samples.extend(buffer.inverse_w.iter().zip(&buffer.triangles).map(
+            |(depth, triangles)| {
+                let is_asked = u32x8::new(triangles.to_array().map(|local| {
+                    if local != NONE && may_be_passed[local as usize] { u32::MAX } else { 0 }
+                }));
+                Followed {
+                    is_followed: is_asked,
+                    is_asked,
+                    last: *depth,
+                    next: *depth,
+                    triangle: *triangles,
+                    best: none,
+                    best_triangle: u32x8::splat(NONE),
+                    best_polygon: none,
+                    is_bound: 0,
+                    passed: u32x8::splat(NONE),
+                    passed_at: none,
+                }
+            },
+        ));
     }
 
     /// Asks for samples where another mesh's polygon lies no farther than the deepest relief.
@@ -196,9 +198,11 @@ impl FollowScratch {
             })
         }));
         // The least 1 / w of each sample's relief, and the mesh that it is of.
-        let mut reaches = vec![(f32x8::splat(f32::INFINITY), u32x8::splat(NONE)); self.samples.len()];
+        let mut reaches =
+            vec![(f32x8::splat(f32::INFINITY), u32x8::splat(NONE)); self.samples.len()];
         for (at, (reach, mesh)) in reaches.iter_mut().enumerate() {
-            let (triangles, depth) = (buffer.triangles[at].to_array(), buffer.inverse_w[at].to_array());
+            let (triangles, depth) =
+                (buffer.triangles[at].to_array(), buffer.inverse_w[at].to_array());
             for lane in 0..8 {
                 let local = triangles[lane] as usize;
                 let Some([a, b, c]) = self.deepest.get(local).copied().flatten() else { continue };
@@ -286,12 +290,10 @@ impl FollowScratch {
                 let (at, inverse_w) = buffer.row::<S>(&row, triangle.depth);
                 let samples = &mut samples[at];
                 let is_within = inverse_w.simd_lt(samples.last) & inverse_w.simd_gt(samples.next);
-                let is_passed = samples.passed.simd_eq(side)
-                    & inverse_w.simd_ge(samples.passed_at).to_bits();
-                let is_next = is_within.to_bits()
-                    & row.mask.cast_unsigned()
-                    & samples.is_asked
-                    & !is_passed;
+                let is_passed =
+                    samples.passed.simd_eq(side) & inverse_w.simd_ge(samples.passed_at).to_bits();
+                let is_next =
+                    is_within.to_bits() & row.mask.cast_unsigned() & samples.is_asked & !is_passed;
                 samples.next = f32x8::from_bits(is_next).bitselect(inverse_w, samples.next);
                 samples.triangle = is_next.bitselect(local, samples.triangle);
             });

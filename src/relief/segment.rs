@@ -88,14 +88,17 @@ impl Piece<'_> {
         let (mut at, mut level) = (0.0_f64, top);
         for _ in 0..MAX_STEPS {
             // Beyond the edges of a clamped pattern there are cells alone.
-            if field.is_clamped && axes.iter().any(|axis| axis.stored < 0 || axis.stored != axis.cell) {
+            if field.is_clamped
+                && axes.iter().any(|axis| axis.stored < 0 || axis.stored != axis.cell)
+            {
                 level = 0;
             }
             let nodes = [0, 1].map(|i| self.node(i, axes[i], level));
             let (exit, first) = self.exit(&nodes, at);
             let end = exit.min(1.0);
             // The path is lowest at one of its ends.
-            let deepest = self.depth[0] + self.depth[1] * if self.depth[1] > 0.0 { end } else { at };
+            let deepest =
+                self.depth[0] + self.depth[1] * if self.depth[1] > 0.0 { end } else { at };
             let stored = axes.map(|axis| axis.stored);
             if deepest + field.height_above(level, stored) >= 1.0 {
                 if level > 0 {

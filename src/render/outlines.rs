@@ -60,9 +60,11 @@ impl<'a> Outlines<'a> {
         let mesh = &self.scene.meshes[mesh as usize];
         let corners = mesh.triangles[hit.triangle as usize].map(|i| i as usize);
         let mean = |of: &dyn Fn(usize) -> Vec3| {
-            corners.iter().zip(hit.shares).fold(DVec3::ZERO, |sum, (i, share)| {
-                sum + of(*i).as_dvec3() * share
-            }).as_vec3()
+            corners
+                .iter()
+                .zip(hit.shares)
+                .fold(DVec3::ZERO, |sum, (i, share)| sum + of(*i).as_dvec3() * share)
+                .as_vec3()
         };
         SurfacePoint {
             position: mean(&|i| mesh.positions[i]),
@@ -84,7 +86,11 @@ impl<'a> Outlines<'a> {
         let Some((shell, field)) = shell.zip(field()) else { return Met::Polygon };
         let eye = self.scene.camera.eye.as_dvec3();
         let ray = ViewRay { eye, direction: self.projection.direction(place) };
-        if PROBES { shell.probe(mesh, field, triangle, &ray) } else { shell.follow(mesh, field, triangle, &ray) }
+        if PROBES {
+            shell.probe(mesh, field, triangle, &ray)
+        } else {
+            shell.follow(mesh, field, triangle, &ray)
+        }
     }
 }
 
