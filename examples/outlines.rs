@@ -4,10 +4,8 @@
 //! `cargo run --release --example outlines [WIDTH HEIGHT [SEGMENTS PIECES]]`
 
 #[path = "../tests/common/mod.rs"]
-#[allow(dead_code, unreachable_pub, reason = "shared with the tests")]
 mod common;
 #[path = "../tests/common/displaced.rs"]
-#[allow(dead_code, unreachable_pub, reason = "shared with the tests")]
 mod displaced;
 
 use basrelief::{Filter, Layer, Rays, Renderer, Settings};

@@ -36,10 +36,10 @@ fn depths(scene: &Scene) -> Vec<f32> {
 #[test]
 fn curved_reliefs_look_as_displaced_triangles_do() {
     // Overlap at least, and decibels of the horizon and of the truth. The goals at 640x360 are 0.993
-    // and 40 dB for the horizon; there stand 0.9996, and 41 dB on finer stones.
+    // and 40 dB for the horizon, and there are reached; here a stone of the torus has few pixels.
     for (name, mesh, distance, [least_overlap, horizon, truth]) in [
-        ("torus", torus([48, 24]), 3.4, [0.998, 20.0, 20.0]),
-        ("sphere", sphere([48, 24]), 2.6, [0.998, 20.0, 20.0]),
+        ("torus", torus([48, 24]), 3.4, [0.998, 29.0, 54.0]),
+        ("sphere", sphere([48, 24]), 2.6, [0.998, 43.0, 57.0]),
     ] {
         let scene = scene(mesh, stones(), distance);
         let shown = show(&displaced(&scene, 16), &settings(Filter::Nearest));
@@ -55,7 +55,7 @@ fn curved_reliefs_look_as_displaced_triangles_do() {
         let most = u.cross(v).length().sqrt() * 0.06 * 0.01;
         let near = depths_within(&depths(&scene), &shown.depth, most);
         println!("{name}: depth {near:.4}");
-        assert!(near > 0.5, "{name}: depths of {near}");
+        assert!(near > 0.99, "{name}: depths of {near}");
         let polygons = draw(&scene, Settings { silhouette: false, ..settings(Filter::Nearest) });
         assert!(overlap(&polygons, &shown.coverage) < 0.985, "{name} has an outline to speak of");
     }
@@ -200,7 +200,9 @@ fn rays_rise_from_a_ball_without_relief_to_meet() {
         let middle = triangle.iter().fold(Vec3::ZERO, |sum, v| sum + mesh.positions[*v as usize]);
         let middle = (middle / 3.0).as_dvec3();
         let normal = middle.normalize_or_zero();
-        if normal.dot(eye - middle) <= 1e-3 {
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+        let has_area = a != b && b != c && c != a;
+        if !has_area || normal.dot(eye - middle) <= 1e-3 {
             continue;
         }
         let ray = ViewRay { eye, direction: middle - eye };

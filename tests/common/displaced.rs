@@ -1,5 +1,6 @@
 //! The relief as real geometry: each triangle cut into many, whose corners are moved down by the
 //! height map. Drawn without any relief, it is what a relief must look like.
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
 use basrelief::texture::{ColorImage, FULL, Surface, SurfaceMaps, srgb_from_linear};
 use basrelief::{Camera, Filter, Frame, Layer, Material, Mesh, Renderer, Scene, Settings};
