@@ -3,12 +3,10 @@
 //!
 //! `cargo run --release --example outlines [WIDTH HEIGHT [SEGMENTS PIECES]]`
 
-#[path = "../tests/common/displaced.rs"]
-#[allow(dead_code, unreachable_pub, reason = "shared with the tests")]
-mod displaced;
 #[path = "../tests/common/mod.rs"]
-#[allow(dead_code, unreachable_pub, reason = "shared with the tests")]
 mod common;
+#[path = "../tests/common/displaced.rs"]
+mod displaced;
 
 use basrelief::{Filter, Layer, Rays, Renderer, Settings};
 use displaced::{decibels, depths_within, overlap, scene, show, sphere, torus};
@@ -42,7 +40,8 @@ fn main() -> Result<(), basrelief::Error> {
                 depths_within(layers.floats(Layer::Depth), &shown.depth, depth * 0.01),
             );
             for share in [0.5, 0.9, 0.95, 0.99] {
-                let most = displaced::depth_quantile(layers.floats(Layer::Depth), &shown.depth, share);
+                let most =
+                    displaced::depth_quantile(layers.floats(Layer::Depth), &shown.depth, share);
                 print!("{share} {:.4} ", most / depth);
             }
             println!();

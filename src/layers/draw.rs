@@ -46,8 +46,9 @@ impl Renderer {
         };
         geometry.project(scene, &settings);
         let projection = *geometry.projection();
+        // What names and polygons are of is seen past outlines, too.
         let outlines =
-            settings.has_outlines().then(|| Outlines::new(scene, prepared, &projection)).flatten();
+            asked.has_outlines().then(|| Outlines::new(scene, prepared, &projection)).flatten();
         let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
         let hits = Hits { scene, prepared, is_traced, outlines, projection: &projection };
         let mut bands = Band::all(layers, &settings);

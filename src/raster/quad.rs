@@ -20,6 +20,8 @@ pub struct AttributePlanes {
     /// dP/du + beta dP/dv - gamma sqrt(|dP/du x dP/dv|) N`. `(0, 0, 1)` over w without texture
     /// coordinates.
     pub view: [Plane; 3],
+    /// How much the ray's gamma grows per repeat along u and along v; 0 where the triangle is flat.
+    pub bend: [f32; 2],
     /// World-space attributes; only kept under `Lighting::Lit`.
     pub lit: Option<Box<LitPlanes>>,
     /// The index of the mesh, and of the triangle in it.
@@ -106,6 +108,13 @@ impl<'a> QuadPair<'a> {
     pub fn view(&self) -> [PixelLanes; 3] {
         let [x, y] = self.centers();
         Places::<false> { x, y, planes: self.planes }.attributes(self.w, |planes| &planes.view)
+    }
+
+    /// [`AttributePlanes::bend`] of the pixels' triangles; `None` where both are flat.
+    #[inline(always)]
+    pub fn bend(&self) -> Option<[PixelLanes; 2]> {
+        let [[a, b], [c, d]] = self.planes.map(|planes| planes.bend);
+        ([a, b, c, d] != [0.0; 4]).then(|| [halves(a, c), halves(b, d)])
     }
 
     /// A bit for each lane whose pixel sees the triangle.

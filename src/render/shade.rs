@@ -227,8 +227,12 @@ impl<'a> Shader<'a> {
         footprints.clear();
         if let Some(field) = field.filter(|_| rule.is_traced) {
             footprints.extend(pairs.map(|index| {
-                let pair = block.pair(index);
-                Footprints::before_hits(&pair.uv, &pair.view(), field, pair.covered_bits())
+                let (pair, view) = (block.pair(index), block.pair(index).view());
+                let pixels = Footprints::before_hits(&pair.uv, &view, field, pair.covered_bits());
+                match pair.bend() {
+                    Some(bend) => pixels.bent(&view, &bend, field),
+                    None => pixels,
+                }
             }));
             return Footprints::find_hits(footprints, field, rule);
         }
@@ -236,7 +240,11 @@ impl<'a> Shader<'a> {
             let pair = block.pair(index);
             // Where there is no relief, the view changes nothing and is not computed.
             let view = if field.is_some() { pair.view() } else { [PixelLanes::ZERO; 3] };
-            Footprints::of_quads(&pair.uv, &view, field, rule, pair.covered_bits())
+            let pixels = Footprints::of_quads(&pair.uv, &view, field, rule, pair.covered_bits());
+            match (pair.bend(), field) {
+                (Some(bend), Some(field)) => pixels.bent(&view, &bend, field),
+                _ => pixels,
+            }
         }));
     }
 

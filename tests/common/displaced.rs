@@ -1,5 +1,6 @@
 //! The relief as real geometry: each triangle cut into many, whose corners are moved down by the
 //! height map. Drawn without any relief, it is what a relief must look like.
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
 use basrelief::texture::{ColorImage, FULL, Surface, SurfaceMaps, srgb_from_linear};
 use basrelief::{Camera, Filter, Frame, Layer, Material, Mesh, Renderer, Scene, Settings};
@@ -32,8 +33,7 @@ pub fn grid(num: [u32; 2], at: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2)) -> Mesh 
     let index = |x: u32, y: u32| y * (num[0] + 1) + x;
     let quads = (0..num[1]).flat_map(|y| (0..num[0]).map(move |x| [x, y]));
     let triangles = quads.flat_map(|[x, y]| {
-        let [a, b, c, d] =
-            [index(x, y), index(x + 1, y), index(x + 1, y + 1), index(x, y + 1)];
+        let [a, b, c, d] = [index(x, y), index(x + 1, y), index(x + 1, y + 1), index(x, y + 1)];
         [[a, b, c], [a, c, d]]
     });
     Mesh::new(
@@ -136,9 +136,11 @@ fn displaced_mesh(mesh: &Mesh, surface: &Surface, pieces: u32, eye: Vec3) -> Mes
                 let b = [1.0 - b[0] - b[1], b[0], b[1]];
                 let place = corners[0].1 * b[0] + corners[1].1 * b[1] + corners[2].1 * b[2];
                 let depth = 1.0 - height(surface, place);
-                cut.positions.push((0..3).fold(Vec3::ZERO, |sum, i| {
-                    sum + (corners[i].0 - corners[i].2 * depth) * b[i]
-                }));
+                cut.positions.push(
+                    (0..3).fold(Vec3::ZERO, |sum, i| {
+                        sum + (corners[i].0 - corners[i].2 * depth) * b[i]
+                    }),
+                );
                 cut.tex_coords.push(place);
             }
         }
@@ -191,9 +193,7 @@ pub fn show(displaced: &Scene, settings: &Settings) -> Shown {
     let coverage = renderer.render();
     let depth = renderer.render_layers(&[Layer::Depth]).floats(Layer::Depth).to_vec();
     let [width, height] = [settings.width, settings.height].map(|side| side * FINER);
-    renderer
-        .set_settings(Settings { width, height, msaa: 1, ..plain })
-        .expect("valid settings");
+    renderer.set_settings(Settings { width, height, msaa: 1, ..plain }).expect("valid settings");
     let fine = renderer.render();
     Shown { coverage, colors: blurred(&fine, settings), depth }
 }
@@ -214,7 +214,9 @@ fn blurred(fine: &Frame, settings: &Settings) -> Frame {
             let (mut sum, mut weights) = ([0.0_f32; 4], 0.0);
             for ([dx, dy], weight) in &offsets {
                 let at = [x * finer + dx, y * finer + dy];
-                if (0..fine.width as i32).contains(&at[0]) && (0..fine.height as i32).contains(&at[1]) {
+                if (0..fine.width as i32).contains(&at[0])
+                    && (0..fine.height as i32).contains(&at[1])
+                {
                     let pixel = fine.pixels[(at[1] * fine.width as i32 + at[0]) as usize];
                     (0..4).for_each(|c| sum[c] += pixel[c] * weight);
                     weights += weight;
