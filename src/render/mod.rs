@@ -15,6 +15,7 @@ mod exact;
 mod ground;
 mod mapped;
 mod open_sky;
+mod points;
 mod prepared;
 mod reflections;
 mod shade;

@@ -25,6 +25,7 @@ pub(crate) struct PreparedScene {
     surfaces: Vec<Prepared>,
     /// The same drawn flat, as they are where relief is not traced.
     flat: Vec<Prepared>,
+    has_points: bool,
     /// The surface of each material that has one.
     of_material: Vec<Option<usize>>,
     /// Lit for good, with relief or without; `None` where lights are evaluated place by place.
@@ -35,8 +36,8 @@ pub(crate) struct PreparedScene {
     reflectance: OnceLock<Reflectance>,
     /// What the truth's light and shadows ask for.
     occluders: OnceLock<Occluders>,
-    /// What curved surfaces ask for: of each sun.
-    ceilings: OnceLock<Vec<Ceiling>>,
+    /// What curved surfaces ask for: of each light that is a sun.
+    ceilings: OnceLock<Vec<Option<Ceiling>>>,
     /// The same of the sky.
     skies: OnceLock<Skies>,
 }
@@ -78,8 +79,18 @@ impl PreparedScene {
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
         let (reflectance, occluders, ceilings, skies) = Default::default();
-        let (baked, mapped) = (None, None);
-        Self { surfaces, flat, of_material, baked, mapped, reflectance, occluders, ceilings, skies }
+        Self {
+            surfaces,
+            flat,
+            has_points: scene.lights.iter().any(|light| matches!(light, Light::Point { .. })),
+            of_material,
+            baked: None,
+            mapped: None,
+            reflectance,
+            occluders,
+            ceilings,
+            skies,
+        }
     }
 
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
@@ -97,9 +108,9 @@ impl PreparedScene {
         if is_lit && !is_exact && self.mapped.as_ref().is_none_or(|m| m.0 != settings.parallax) {
             self.mapped = Some((settings.parallax, self.mapped(scene, settings.parallax)));
         }
-        // Where a point shines, no piece is lit alike all over.
-        let has_points = scene.lights.iter().any(|light| matches!(light, Light::Point { .. }));
-        if is_lit && !is_exact && !has_points {
+        // Where a point shines, only a filter that asks for lights adds it to what is baked.
+        let asks = settings.filter.traits().asks_for_lights;
+        if is_lit && !is_exact && (!self.has_points || asks) {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
             let unlit = |material| self.of_material(material, settings.parallax);
@@ -109,12 +120,18 @@ impl PreparedScene {
             }
             let curved = baked.curved(scene).map(|mesh| mesh.material).collect::<Vec<_>>();
             self.baked = Some((settings.parallax, baked));
-            if !curved.is_empty() && settings.filter.traits().asks_for_lights {
+            if !curved.is_empty() && asks {
                 self.ceilings(scene);
                 self.skies(scene);
-                for material in curved {
+            }
+            if asks {
+                let all = scene.meshes.iter().map(|mesh| mesh.material).filter(|_| self.has_points);
+                for material in curved.into_iter().chain(all) {
                     self.of_material(material, settings.parallax).map(Prepared::horizons);
                 }
+            }
+            if self.has_points {
+                self.occluders(scene);
             }
         } else {
             self.baked = None;
@@ -149,8 +166,13 @@ impl PreparedScene {
         self.occluders.get_or_init(|| Occluders::new(scene))
     }
 
-    /// What may hide each sun from curved surfaces; nothing else than suns shines there.
-    pub(crate) fn ceilings(&self, scene: &Scene) -> &[Ceiling] {
+    /// Whether any light is a point.
+    pub(crate) fn has_points(&self) -> bool {
+        self.has_points
+    }
+
+    /// What may hide each light from curved surfaces; `None` for a point.
+    pub(crate) fn ceilings(&self, scene: &Scene) -> &[Option<Ceiling>] {
         self.ceilings.get_or_init(|| {
             let Some((_, baked)) = &self.baked else { return Vec::new() };
             let triangles = self.occluders(scene).triangles();
@@ -163,7 +185,7 @@ impl PreparedScene {
                     baked.curved(scene).flat_map(|mesh| mesh.positions.iter().copied()),
                 ))
             };
-            scene.lights.iter().filter_map(ceiling).collect()
+            scene.lights.iter().map(ceiling).collect()
         })
     }
 
@@ -211,11 +233,11 @@ impl PreparedScene {
             && settings.filter.traits().asks_for_lights
             && prepared.field().is_some()
             && prepared.surface().has_normals();
-        let swept = is_swept.then_some(Swept { suns: u64::MAX, has_sky: true });
-        let diffuse = mapped.and_then(|mapped| mapped.diffuse.as_ref());
-        let prepared = diffuse.filter(|_| is_swept).unwrap_or(prepared);
+        let swept = is_swept.then_some(Swept { lights: u64::MAX, has_sky: true });
+        let diffuse = mapped.and_then(|mapped| mapped.diffuse.as_ref()).unwrap_or(unlit);
+        let prepared = if is_swept { diffuse } else { prepared };
         let glow = mapped.and_then(|mapped| mapped.glow.as_ref());
-        Some(Ground { material, prepared, unlit, is_lit, swept, baked, glow })
+        Some(Ground { material, prepared, unlit, diffuse, is_lit, swept, baked, glow })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

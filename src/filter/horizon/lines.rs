@@ -234,11 +234,11 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         let (words, stride) = (rows.words(), rows.stride());
         let mut values = [LineLanes::ZERO; CHANNELS];
         let [red, green] = between.halves_at(words, start);
-        let [blue, _] = between.halves_at(words, start + stride);
+        let [blue, height] = between.halves_at(words, start + stride);
         values[..3].copy_from_slice(&[red, green, blue]);
         if let (true, Some(light)) = (LIT, self.grid.light) {
             let p = place * self.grid.step + self.grid.begin;
-            let shown = light.at(horizons, between, [self.others + self.xi, p]);
+            let shown = light.at(horizons, between, [self.others + self.xi, p, height]);
             (0..3).for_each(|c| values[c] *= shown[c]);
         } else if CHANNELS > 3 && rows.has_normals() {
             let [near, far] = between.words_at(words, start + 2 * stride).map(|words| {
