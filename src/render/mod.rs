@@ -16,6 +16,7 @@ mod ground;
 mod mapped;
 mod open_sky;
 mod outlines;
+mod points;
 mod prepared;
 mod reflections;
 mod shade;

@@ -5,6 +5,7 @@ use super::exact::Exact;
 use super::ground::{Ground, in_lanes, of_hits, pixel_center, surface_point};
 use super::mapped::Glow;
 use super::outlines::Outlines;
+use super::points::HiddenLights;
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Samples, Scratch, Traits, Work};
 use crate::footprint::{Footprint, FootprintRule, Footprints};
@@ -96,19 +97,30 @@ impl<'a> Shader<'a> {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
         let start = colors.len();
+        let mut hidden = HiddenLights::none(self.scene.lights.len());
         if let Some(swept) = ground.swept {
-            self.swept(&ground, swept, block, &mut scratch, colors);
+            let shown = self.hide_on_curved(&ground, block, &mut hidden);
+            self.hide_points(&ground, block, &mut hidden);
+            self.swept(&ground, (swept, &hidden), block, &mut scratch, colors);
+            for (color, shown) in colors[start..].iter_mut().zip(shown) {
+                color.iter_mut().for_each(|channel| *channel *= shown);
+            }
         } else {
             self.textured(&ground, block, &mut scratch, colors);
         }
+        let colors = &mut colors[start..];
         if let Some(lit) = ground.baked {
-            self.shadow(&ground, &lit, block, &mut scratch, &mut colors[start..]);
+            self.shadow((&ground, &lit), block, &mut scratch, &mut hidden, colors);
+            if self.prepared.has_points() {
+                self.hide_points(&ground, block, &mut hidden);
+                self.shine(&ground, &hidden, block, &mut scratch, colors);
+            }
         }
         if ground.baked.is_some() || ground.swept.is_some() {
-            self.reflect(&ground, block, &mut scratch, &mut colors[start..]);
+            self.reflect(&ground, &hidden, block, &mut scratch, colors);
         }
         if let Some(glow) = ground.glow {
-            self.glow(&ground, glow, block, &mut scratch, &mut colors[start..]);
+            self.glow(&ground, glow, block, &mut scratch, colors);
         }
     }
 
@@ -123,7 +135,7 @@ impl<'a> Shader<'a> {
     ) {
         let unlit = Ground { is_lit: false, swept: None, baked: None, glow: None, ..*ground };
         let mut sent = Vec::with_capacity(colors.len());
-        let sending = Ground { material, prepared, unlit: prepared, ..unlit };
+        let sending = Ground { material, prepared, unlit: prepared, diffuse: prepared, ..unlit };
         self.textured(&sending, block, scratch, &mut sent);
         for (color, sent) in colors.iter_mut().zip(&sent) {
             (0..3).for_each(|c| color[c] += sent[c]);
@@ -189,7 +201,7 @@ impl<'a> Shader<'a> {
         let curved = if let Some(swept) = ground.swept {
             curved_lights = CurvedLights::new(
                 (self.scene, self.prepared.skies(self.scene)),
-                swept,
+                (swept, ground.prepared.surface().relief_depth()),
                 block,
                 pairs.clone(),
             );

@@ -214,31 +214,34 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         let between = self.between(steps, i);
         let [near, far] = &steps.starts;
         let place = steps.places[i];
-        let mut values = self.values(near[i], &between);
+        let (mut values, mut height) = self.values(near[i], &between);
         if HALVES && near[i] != far[i] {
-            let others = self.values::<CHANNELS>(far[i], &between);
+            let (others, far_height) = self.values::<CHANNELS>(far[i], &between);
             (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
+            height = (height + far_height) * 0.5;
         }
         if let (true, Some(light)) = (LIT, self.grid.light) {
             let p = place * self.grid.step + self.grid.begin;
-            let shown = light.at(steps.horizons[i], &between, [self.others + self.xi, p]);
+            let at = [self.others + self.xi, p, height];
+            let shown = light.at(steps.horizons[i], &between, at);
             (0..3).for_each(|c| values[c] *= shown[c]);
         }
         Texels { values, place }
     }
 
-    /// The values where lines cross a row: colours in units of 1 / [`BETWEEN_SCALE`].
+    /// The values where lines cross a row, and their heights: colours and heights in units of
+    /// 1 / [`BETWEEN_SCALE`].
     #[inline(always)]
     fn values<const CHANNELS: usize>(
         &self,
         start: usize,
         between: &Between,
-    ) -> [LineLanes; CHANNELS] {
+    ) -> ([LineLanes; CHANNELS], LineLanes) {
         let rows = self.frame.rows;
         let (words, stride) = (rows.words(), rows.stride());
         let mut values = [LineLanes::ZERO; CHANNELS];
         let [red, green] = between.halves_at(words, start);
-        let [blue, _] = between.halves_at(words, start + stride);
+        let [blue, height] = between.halves_at(words, start + stride);
         values[..3].copy_from_slice(&[red, green, blue]);
         if CHANNELS > 3 && rows.has_normals() {
             let [near, far] = between.words_at(words, start + 2 * stride).map(|words| {
@@ -249,6 +252,6 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         } else if CHANNELS > 3 {
             values[CHANNELS - 1] = LineLanes::ONE;
         }
-        values
+        (values, height)
     }
 }
