@@ -83,7 +83,7 @@ fn lines_within_a_pixel(a: &[u32], b: &[u32], width: usize) -> f64 {
         let offsets = [-1_isize, 0, 1].map(|y| [-1, 0, 1].map(|x| y * width as isize + x));
         offsets.into_iter().flatten().filter_map(move |offset| at.checked_add_signed(offset))
     };
-    let inner = |at: &usize| at % width > 0 && at % width < width - 1;
+    let inner = |at: &usize| !at.is_multiple_of(width) && at % width < width - 1;
     let line: Vec<usize> = (0..a.len()).filter(inner).filter(|at| border(a, *at)).collect();
     let near =
         line.iter().filter(|at| around(**at).any(|other| other < b.len() && border(b, other)));

@@ -152,6 +152,11 @@ fn read_file(path: &Path, shown: &Path, most: u64) -> Result<Vec<u8>> {
 /// The JSON of a file, and the binary part if it has one.
 fn parse(bytes: &[u8]) -> Reasoned<(Root, Option<Vec<u8>>)> {
     let (json, binary) = if bytes.starts_with(b"glTF") {
+        // The length of the whole; the crate takes the header's own 12 bytes from it unasked.
+        let length = bytes.get(8..12).and_then(|length| length.try_into().ok());
+        if length.is_none_or(|length| u32::from_le_bytes(length) < 12) {
+            return Err("is no whole GLB file".into());
+        }
         let glb = Glb::from_slice(bytes).map_err(|e| format!("is no whole GLB file: {e}"))?;
         (glb.json.into_owned(), glb.bin.map(|bin| bin.into_owned()))
     } else {
