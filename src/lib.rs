@@ -129,6 +129,7 @@
 //! | `geometry` | model space to screen triangles: projection, culling, clipping, fixed point |
 //! | `raster` | screen triangles to quads: tiles, edge functions, depth, helper lanes |
 //! | `relief` | height field, displacement, march to the hit; what a mip level loses |
+//! | `shell` | the relief of a mesh in the world, and rays that are followed through it |
 //! | `footprint` | formulas (2) and (3), the ellipse of formula (1), all rules for mip levels |
 //! | `light` | how bright a normal is |
 //! | [`filter`] | footprints to colours: all filters; the tables of the far field |

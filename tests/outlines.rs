@@ -11,7 +11,9 @@ use basrelief::simd::PixelLanes;
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
 use basrelief::{Filter, Frame, Layer, Material, Mesh, Rays, Renderer, Scene, Settings};
 use common::{Random, cobbles, floor_scene, rough_surface};
-use displaced::{decibels, depths_within, displaced, overlap, scene, show, sphere, torus};
+use displaced::{
+    ball_in_stones, decibels, depths_within, displaced, overlap, scene, show, sphere, torus,
+};
 use glam::{DVec3, Vec3};
 
 /// As small as a picture may be and a stone still have some pixels.
@@ -61,18 +63,6 @@ fn curved_reliefs_look_as_displaced_triangles_do() {
     }
 }
 
-/// A floor of stones from above, with a ball that is sunk half into it.
-fn ball_in_stones() -> Scene {
-    let mut scene = floor_scene(Surface::new(cobbles(64, 2)).expect("valid maps"), 0.5);
-    let mut ball = sphere([48, 24]);
-    ball.positions.iter_mut().for_each(|position| *position *= 0.8);
-    ball.material = 1;
-    scene.meshes.push(ball);
-    scene.materials.push(Material { base_color: Vec3::new(0.8, 0.3, 0.2), ..Default::default() });
-    (scene.camera.eye, scene.camera.target) = (Vec3::new(0.0, 1.5, 2.2), Vec3::ZERO);
-    scene
-}
-
 /// The part of the pixels with a neighbour of another name for which such a pixel of the other picture
 /// is no farther than one pixel.
 fn lines_within_a_pixel(a: &[u32], b: &[u32], width: usize) -> f64 {
@@ -92,7 +82,7 @@ fn lines_within_a_pixel(a: &[u32], b: &[u32], width: usize) -> f64 {
 
 #[test]
 fn a_ball_sinks_between_the_stones() {
-    let scene = ball_in_stones();
+    let scene = ball_in_stones(cobbles(64, 2));
     // The floor is large, so only its middle is cut finely enough: one more floor of that.
     let mut fine = scene.clone();
     fine.meshes[0] = {
