@@ -67,15 +67,15 @@ fn draw(criterion: &mut Criterion) {
             let settings = Settings { msaa, ..Settings::default() };
             let geometry = project(&scene, &settings);
             let mut rasterizer = Rasterizer::default();
-            let mut frame: Frame = Frame::default();
+            let mut frame = Frame::filled(settings.width, settings.height, [0.0; 4]);
             group.bench_function(format!("{name}_msaa{msaa}"), |b| {
                 b.iter(|| {
                     rasterizer.draw(
                         black_box(&geometry),
-                        Drawn { scene: &scene, settings: &settings, group: None },
+                        Drawn { scene: &scene, settings: &settings, group: None, follow: None },
                         &flat,
                         &|| 0.0,
-                        &mut frame,
+                        &mut frame.pixels,
                     )
                 });
             });

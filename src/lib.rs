@@ -178,6 +178,8 @@ pub mod relief;
 mod render;
 mod settings;
 #[doc(hidden)]
+pub mod shell;
+#[doc(hidden)]
 pub mod simd;
 
 pub use error::{Error, Result};

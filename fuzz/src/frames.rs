@@ -112,6 +112,7 @@ pub fn layers(bytes: &[u8]) {
             height: 14,
             filter: Filter::Nearest,
             parallax: options & 4 == 0,
+            silhouette: options & 64 == 0,
             cull_back_faces: options & 8 != 0,
             ..Settings::default()
         };

@@ -53,14 +53,21 @@ impl<R: BufRead + Seek> Source for R {}
 
 /// Reads only the head of an image file.
 pub(crate) fn probe(path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
-    contained(path, || {
-        let decoder = decoder(open(path, limits)?, path, limits)?;
-        let (width, height) = decoder.dimensions();
-        Ok(ImageInfo {
-            size: [width, height],
-            num_bytes: decoder.total_bytes(),
-            color: decoder.color_type(),
-        })
+    contained(path, || head(open(path, limits)?, path, limits))
+}
+
+/// Reads only the head of an image file in memory, as [`image_bytes`] does.
+pub(crate) fn probe_bytes(bytes: &[u8], path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
+    contained(path, || head(Box::new(Cursor::new(bytes)), path, limits))
+}
+
+fn head(reader: Bytes, path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
+    let decoder = decoder(reader, path, limits)?;
+    let (width, height) = decoder.dimensions();
+    Ok(ImageInfo {
+        size: [width, height],
+        num_bytes: decoder.total_bytes(),
+        color: decoder.color_type(),
     })
 }
 

@@ -168,6 +168,14 @@ impl Footprints {
         Self { base: *uv, hit, dx, dy, displacement, covered }.bounded()
     }
 
+    /// Samples of one pixel whose rays meet the relief at known places, with the pixel's
+    /// derivatives.
+    pub fn of_hits(hit: Uv, pixel: &Footprint, covered: u8) -> Self {
+        let [dx, dy] = [pixel.dx, pixel.dy].map(|derivative| derivative.map(PixelLanes::splat));
+        let displacement = [PixelLanes::ZERO; 2];
+        Self { base: hit, hit, dx, dy, displacement, covered }.bounded()
+    }
+
     /// One pixel in all lanes, of which the first is filtered. Any numbers are made finite and
     /// bounded.
     pub fn splat(footprint: &Footprint) -> Self {

@@ -114,6 +114,20 @@ impl Projection {
         DVec3::new(across / self.focal[0], down / self.focal[1], 1.0)
     }
 
+    /// The world direction of the ray through a place of the screen, at the distance 1 along the
+    /// view.
+    #[inline]
+    pub fn direction(&self, place: [f64; 2]) -> DVec3 {
+        self.unit_axes * self.ray(place)
+    }
+
+    /// View space of a world position: x and y in pixels times world units, and the distance along
+    /// the view.
+    pub fn view(&self, position: Vec3) -> Vec3 {
+        let ray = position - self.eye;
+        Vec3::from(self.axes.map(|axis| axis.dot(ray)))
+    }
+
     /// The world position of a place given along the axes of [`Self::ray`].
     #[inline]
     pub fn world(&self, place: DVec3) -> Vec3 {

@@ -69,7 +69,7 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
     let asked = settings;
     let settings = Settings { msaa, lighting, ..settings.clone() };
     let pool = Pool::default();
-    let shader = Shader::new(scene, &settings, &prepared, &pool);
+    let shader = Shader::new(scene, &settings, &prepared, None, &pool);
     let probe = Probe {
         scene,
         asked,
@@ -90,10 +90,11 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
         colors.resize(colors.len() + block.num_pairs(), [PixelLanes::ZERO; 3]);
     };
     let geometry = geometry::project(scene, &settings);
-    let mut frame = crate::Frame::filled(1, 1, [0.0; 4]);
+    let mut colors =
+        vec![[0.0; 4]; settings.drawn().width as usize * settings.drawn().height as usize];
     let group = |triangle| prepared.group(scene, triangle);
-    let drawn = Drawn { scene, settings: &settings, group: Some(&group) };
-    Rasterizer::default().draw(&geometry, drawn, &shade, &|| 0.0, &mut frame);
+    let drawn = Drawn { scene, settings: &settings, group: Some(&group), follow: None };
+    Rasterizer::default().draw(&geometry, drawn, &shade, &|| 0.0, &mut colors);
     Ok(pixels.measured(&settings, view))
 }
 

@@ -2,13 +2,14 @@
 
 use super::layer::Layer;
 use super::place::write_place;
-use super::values::{Band, Slot};
+use super::values::{Band, ValuesMut};
 use crate::geometry::Projection;
 use crate::light::unit_axes;
 use crate::raster::{CenterTile, LitLanes, QuadBlock, QuadPair};
 use crate::relief::{HeightField, ViewRays, displacement, finite, march_all, stretch};
-use crate::render::PreparedScene;
+use crate::render::{Outlines, PreparedScene};
 use crate::scene::{Material, Scene};
+use crate::shell::Met;
 use crate::simd::PixelLanes;
 use crate::texture::{FULL_F32, Texel};
 use glam::Vec3;
@@ -19,6 +20,8 @@ pub(super) struct Hits<'a> {
     pub(super) prepared: &'a PreparedScene,
     /// Whether relief is traced.
     pub(super) is_traced: bool,
+    /// Where rays end on curved meshes.
+    pub(super) outlines: Option<Outlines<'a>>,
     pub(super) projection: &'a Projection,
 }
 
@@ -69,6 +72,9 @@ impl Hits<'_> {
             );
             if let Some(field) = field {
                 trace(&block, field, &mut hits);
+                if let Some(outlines) = &self.outlines {
+                    follow(&block, outlines, &mut hits);
+                }
             }
             let material = &self.scene.materials[block.material];
             for (pair, hits) in block.pairs().zip(&hits) {
@@ -99,7 +105,7 @@ impl Hits<'_> {
                 lane,
             };
             for (layer, slot) in &mut band.slots {
-                let Slot::Floats(values) = slot else { continue };
+                let ValuesMut::Floats(values) = slot else { continue };
                 let values = &mut values[at * layer.num_channels()..];
                 // Without relief the polygon's place stands already.
                 if layer.is_place() && has_relief {
@@ -161,6 +167,24 @@ fn trace(block: &QuadBlock, field: &HeightField, hits: &mut [PairHits]) {
         hits.uv = [0, 1].map(|i| hits.uv[i] + along[i] * depth);
         // At least 1, and so never before the polygon, by the rules of rounding.
         hits.farther = PixelLanes::ONE + finite(stretch(&pair.view(), field.relief_depth) * depth);
+    }
+}
+
+/// Follows the rays of a block's pairs that see curved meshes.
+fn follow(block: &QuadBlock, outlines: &Outlines, hits: &mut [PairHits]) {
+    for (pair, hits) in block.pairs().zip(hits) {
+        for lane in pair.covered() {
+            let triangle = pair.planes[lane / 4].triangle;
+            if !outlines.is_curved(triangle[0]) {
+                continue;
+            }
+            let place = pair.pixel(lane).map(|c| f64::from(c) + 0.5);
+            // Where rounding lets a ray pass after all, the polygon's own frame serves.
+            let Met::Relief(hit) = outlines.met(triangle, place) else { continue };
+            (0..2).for_each(|i| hits.uv[i].as_mut_array()[lane] = hit.place.uv[i] as f32);
+            let farther = hit.distance as f32 / pair.w.as_array()[lane];
+            hits.farther.as_mut_array()[lane] = farther.max(1.0);
+        }
     }
 }
 

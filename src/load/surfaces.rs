@@ -4,10 +4,11 @@
 //! different plan becomes one [`Surface`], small ones in parallel too. What all of that needs is
 //! estimated from the heads of the files before any is decoded.
 
+use super::images::Images;
 use super::options::LoadOptions;
 use super::plan::{Kind, Map, Numbers, Plan, WRAPS};
 use super::stage::{Counter, LoadStage, Report};
-use crate::decode::{self, ImageInfo, ImageLimits, Samples};
+use crate::decode::{ImageInfo, Samples};
 use crate::error::{Error, Result};
 use crate::scene::MaterialMaps;
 use crate::texture::{
@@ -53,6 +54,7 @@ type Textures = BTreeMap<(Map, usize), Arc<Texture>>;
 /// Names the image that cannot be read or the limit that is exceeded.
 pub(super) fn build(
     plans: &BTreeSet<Plan>,
+    images: &Images,
     options: &LoadOptions,
     report: &Report,
 ) -> Result<BTreeMap<Plan, Built>> {
@@ -60,13 +62,14 @@ pub(super) fn build(
     options.check_num_textures(files.len())?;
     let limits = options.image_limits();
     let paths: Vec<&Path> = files.keys().copied().collect();
-    let infos: Vec<_> = paths.par_iter().map(|path| decode::probe(path, limits)).collect();
+    let infos: Vec<_> = paths.par_iter().map(|path| images.probe(path, limits)).collect();
     let infos: Vec<ImageInfo> = infos.into_iter().collect::<Result<_>>()?;
     let infos = paths.iter().copied().zip(infos).collect();
     check_memory(plans, &infos, options)?;
     let counter = Counter::new(files.len(), |done, num| LoadStage::Images { done, num }, report);
     let decode_all = |(path, kinds): (&&Path, &BTreeSet<&Kind>)| {
-        decode_all(path, kinds, limits).inspect(|_| counter.add_one())
+        let samples = images.samples(path, limits);
+        samples.map(|samples| maps_of(path, kinds, &samples)).inspect(|_| counter.add_one())
     };
     let decoded: Vec<_> = files.par_iter().map(decode_all).collect();
     let mut maps = BTreeMap::new();
@@ -199,15 +202,9 @@ fn check_memory(
     Ok(())
 }
 
-fn decode_all(
-    path: &Path,
-    kinds: &BTreeSet<&Kind>,
-    limits: ImageLimits,
-) -> Result<Vec<(Map, MapImage)>> {
-    let samples = decode::samples(path, limits)?;
-    let map =
-        |kind: &Kind| (Map { path: path.into(), kind: kind.clone() }, convert(&samples, kind));
-    Ok(kinds.iter().map(|kind| map(kind)).collect())
+fn maps_of(path: &Path, kinds: &BTreeSet<&Kind>, samples: &Samples) -> Vec<(Map, MapImage)> {
+    let map = |kind: &Kind| (Map { path: path.into(), kind: kind.clone() }, convert(samples, kind));
+    kinds.iter().map(|kind| map(kind)).collect()
 }
 
 fn convert(samples: &Samples, kind: &Kind) -> MapImage {

@@ -89,6 +89,7 @@ impl<'a> PlaneMaker<'a> {
         });
         let uv = [0, 1].map(|axis| basis.plane(tex_coords.map(|uv| uv[axis])));
         for (lane, planes) in planes.iter_mut().enumerate() {
+            planes.triangle = corners[lane].triangle;
             planes.inverse_w = one(&inverse_w, lane);
             // Meshes with texture coordinates and without may meet in one vector, so each lane is
             // asked.
@@ -140,7 +141,6 @@ fn fill_lit(planes: &mut [AttributePlanes], basis: &BasisLanes, corners: &[Corne
             normal: three(&normal),
             tangent_u: three(&tangent_u),
             tangent_v: three(&tangent_v),
-            triangle: corners[lane].triangle,
         };
     }
 }

@@ -40,14 +40,14 @@ impl Rasterizer {
     pub fn see_centers<T: Send>(
         &mut self,
         geometry: &Geometry,
-        (Drawn { scene, settings, group }, has_quads): (Drawn, bool),
+        (drawn, has_quads): (Drawn, bool),
         bands: &mut [T],
         see: &(impl Fn(&CenterTile, &mut T) + Sync),
     ) {
-        let grid = TileGrid::new(settings);
+        let grid = TileGrid::new(drawn.settings);
         self.bins.fill(geometry, &grid);
         let clock = &|| 0.0;
-        let painter = Painter { geometry, scene, settings, group, grid, bins: &self.bins, clock };
+        let painter = Painter { geometry, drawn, grid, bins: &self.bins, clock };
         let scratches = &self.scratches;
         bands.par_iter_mut().enumerate().for_each_init(
             || scratches.take(),
@@ -75,7 +75,7 @@ impl Painter<'_> {
             return;
         }
         let rect = self.grid.rect(tile);
-        scratch.visibility.draw::<1>(self.geometry, &scratch.list, &rect);
+        self.see_samples::<1>(&rect, scratch);
         scratch.quads.clear();
         if has_quads {
             gather::<1>(&scratch.visibility, &mut scratch.quads);

@@ -5,6 +5,7 @@
 //! allocates nothing for tiles or triangles.
 
 use super::attributes::PlaneMaker;
+use super::behind::{Asked, Follow};
 use super::bin::Bins;
 use super::block::QuadBlock;
 use super::edge::Rect;
@@ -38,7 +39,7 @@ pub struct RasterStats {
     pub coverage_ms: f64,
     /// Attribute planes of the triangles that are seen.
     pub attributes_ms: f64,
-    /// Shading.
+    /// Shading, with the sum of its colours.
     pub shade_ms: f64,
 }
 
@@ -74,8 +75,9 @@ pub fn draw(
     let shade = |block: &QuadBlock, colors: &mut Vec<_>| {
         colors.extend(block.pairs().map(|pair| shade(&pair)));
     };
-    let drawn = Drawn { scene, settings, group: None };
-    Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, frame)
+    let drawn = Drawn { scene, settings, group: None, follow: None };
+    frame.fit(TileGrid::new(settings).area.size().map(|side| side as u32));
+    Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, &mut frame.pixels)
 }
 
 /// What is drawn, and how.
@@ -88,42 +90,39 @@ pub struct Drawn<'a> {
     /// A number for each triangle, by the index of its mesh and in it: quads of one number, which
     /// must be of one material, are shaded together. `None` for that of the material.
     pub group: Option<&'a (dyn Fn([u32; 2]) -> u32 + Sync)>,
+    /// What follows rays behind polygons; `None` where all see their nearest polygon.
+    pub follow: Option<&'a dyn Follow>,
 }
 
 impl Rasterizer {
     /// Draws the triangles of `geometry`, which must have been projected from `scene` under
     /// `settings`. `shade` appends the linear red, green and blue of eight pixels for each pair of
-    /// a block, which must depend on that block only. `clock` gives milliseconds. The frame is
-    /// resized to the [area](TileGrid::area) of the tiles and overwritten.
+    /// a block, which must depend on that block only. `clock` gives milliseconds. The pixels, row by
+    /// row those of the [area](TileGrid::area) of the tiles, are overwritten.
     pub fn draw<P: Pixel>(
         &mut self,
         geometry: &Geometry,
-        Drawn { scene, settings, group }: Drawn,
+        drawn: Drawn,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
         clock: &(dyn Fn() -> f64 + Sync),
-        frame: &mut Frame<P>,
+        pixels: &mut [P],
     ) -> RasterStats {
-        let grid = TileGrid::new(settings);
+        let grid = TileGrid::new(drawn.settings);
         let start = clock();
         self.bins.fill(geometry, &grid);
         let binning_ms = clock() - start;
-        [frame.width, frame.height] = grid.area.size().map(|side| side as u32);
-        let num_pixels = frame.width as usize * frame.height as usize;
-        if frame.pixels.len() != num_pixels {
-            // `vec![0; n]` is zeroed lazily by the system, on the thread that first touches a page.
-            frame.pixels = vec![P::default(); num_pixels];
-        }
         // Paint the tiles in parallel. Only times and counts come back to be summed, so the order
         // in which threads end shows nowhere in the picture.
-        let painter = Painter { geometry, scene, settings, group, grid, bins: &self.bins, clock };
+        let painter = Painter { geometry, drawn, grid, bins: &self.bins, clock };
+        let development = Development::of(drawn.settings, P::IS_PICTURE);
         let scratches = &self.scratches;
-        let mut rows = rows_by_tile(frame, &grid);
+        let mut rows = rows_by_tile(pixels, &grid);
         let tiles = rows
             .par_chunks_mut(grid.tile_size as usize)
             .enumerate()
             .map_init(
                 || scratches.take(),
-                |scratch, (tile, rows)| painter.paint(tile, rows, scratch, shade),
+                |scratch, (tile, rows)| painter.paint(tile, rows, scratch, (shade, &development)),
             )
             .reduce(RasterStats::default, RasterStats::add);
         RasterStats { triangles_drawn: geometry.num_triangles() as u64, binning_ms, ..tiles }
@@ -132,12 +131,14 @@ impl Rasterizer {
 
 /// The frame's rows cut into tiles: `tile_size` slices a tile, tile after tile; empty ones below
 /// the frame's last row.
-fn rows_by_tile<'a, P>(frame: &'a mut Frame<P>, grid: &TileGrid) -> Vec<&'a mut [P]> {
-    let (width, tile_size) = (frame.width as usize, grid.tile_size as usize);
+fn rows_by_tile<'a, P>(pixels: &'a mut [P], grid: &TileGrid) -> Vec<&'a mut [P]> {
+    let [width, height] = grid.area.size().map(|side| side as usize);
+    assert_eq!(pixels.len(), width * height, "the pixels must be those of the tiles");
+    let tile_size = grid.tile_size as usize;
     let mut slices = Vec::with_capacity(grid.num() * tile_size);
     let mut rows = Vec::with_capacity(tile_size);
     // Take from every row of a band the piece that belongs to the next tile.
-    for band in frame.pixels.chunks_mut(width * tile_size) {
+    for band in pixels.chunks_mut(width * tile_size) {
         rows.clear();
         rows.extend(band.chunks_mut(width).map(|row| row.chunks_mut(tile_size)));
         for _ in 0..grid.num_tiles[0] {
@@ -153,9 +154,7 @@ fn rows_by_tile<'a, P>(frame: &'a mut Frame<P>, grid: &TileGrid) -> Vec<&'a mut 
 /// What all tiles share.
 pub(super) struct Painter<'a> {
     pub(super) geometry: &'a Geometry,
-    pub(super) scene: &'a Scene,
-    pub(super) settings: &'a Settings,
-    pub(super) group: Option<&'a (dyn Fn([u32; 2]) -> u32 + Sync)>,
+    pub(super) drawn: Drawn<'a>,
     pub(super) grid: TileGrid,
     pub(super) bins: &'a Bins,
     pub(super) clock: &'a (dyn Fn() -> f64 + Sync),
@@ -168,9 +167,11 @@ impl Painter<'_> {
         tile: usize,
         rows: &mut [&mut [P]],
         scratch: &mut Scratch,
-        shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
+        (shade, development): (
+            &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
+            &Development,
+        ),
     ) -> RasterStats {
-        let development = Development::of(self.settings, P::IS_PICTURE);
         let rect = self.grid.rect(tile);
         scratch.list.clear();
         self.bins.list(tile, &mut scratch.list);
@@ -194,39 +195,50 @@ impl Painter<'_> {
         if !is_set {
             scratch.canvas.clear();
         }
-        let (pixels_shaded, shade_ms) = self.shade_quads(&rect, scratch, shade);
+        let pixels_shaded = self.shade_quads(&rect, scratch, shade);
+        let shaded = (self.clock)();
         if !is_full {
             scratch.canvas.add_background(self.background());
         }
-        scratch.canvas.develop(&development);
+        scratch.canvas.develop(development);
         scratch.canvas.copy_to(rows);
         RasterStats {
             pixels_shaded,
             quads_shaded: scratch.quads.len() as u64,
             coverage_ms: seen - start,
             attributes_ms: found - seen,
-            shade_ms,
+            shade_ms: shaded - found,
             ..RasterStats::default()
         }
     }
 
     /// Lists the quads that the tile sees.
-    fn see(&self, rect: &Rect, Scratch { list, visibility, quads, .. }: &mut Scratch) {
+    fn see(&self, rect: &Rect, scratch: &mut Scratch) {
         // The number of samples is a constant of the code below, so that its arrays have a size and
         // its loops a length that the compiler knows.
-        match self.settings.msaa {
-            8 => {
-                visibility.draw::<8>(self.geometry, list, rect);
-                gather::<8>(visibility, quads);
-            }
-            4 => {
-                visibility.draw::<4>(self.geometry, list, rect);
-                gather::<4>(visibility, quads);
-            }
-            _ => {
-                visibility.draw::<1>(self.geometry, list, rect);
-                gather::<1>(visibility, quads);
-            }
+        match self.drawn.settings.msaa {
+            8 => self.see_samples::<8>(rect, scratch),
+            4 => self.see_samples::<4>(rect, scratch),
+            _ => self.see_samples::<1>(rect, scratch),
+        }
+        let Scratch { visibility, quads, .. } = scratch;
+        match self.drawn.settings.msaa {
+            8 => gather::<8>(visibility, quads),
+            4 => gather::<4>(visibility, quads),
+            _ => gather::<1>(visibility, quads),
+        }
+    }
+
+    /// Finds what the samples of a tile see.
+    pub(super) fn see_samples<const S: usize>(
+        &self,
+        rect: &Rect,
+        Scratch { list, visibility, followed, .. }: &mut Scratch,
+    ) {
+        visibility.draw::<S>(self.geometry, list, rect);
+        if let Some(follow) = self.drawn.follow {
+            let asked = Asked { geometry: self.geometry, list, rect, follow };
+            followed.find::<S>(visibility, &asked);
         }
     }
 
@@ -245,8 +257,8 @@ impl Painter<'_> {
             *slot = triangles.len() as u32;
             let ScreenTriangle { mesh, triangle, .. } = *self.geometry.triangle(index);
             triangles.push([mesh, triangle]);
-            let material = self.scene.meshes[mesh as usize].material as u32;
-            let group = self.group.map_or(material, |group| group([mesh, triangle]));
+            let material = self.drawn.scene.meshes[mesh as usize].material as u32;
+            let group = self.drawn.group.map_or(material, |group| group([mesh, triangle]));
             grounds.push([material, group]);
         }
         // From here on a quad names its triangle by the slot of its planes.
@@ -258,34 +270,32 @@ impl Painter<'_> {
         if planes.len() < triangles.len() {
             planes.resize_with(triangles.len(), AttributePlanes::default);
         }
-        PlaneMaker::new(self.geometry, self.scene, self.settings)
+        PlaneMaker::new(self.geometry, self.drawn.scene, self.drawn.settings)
             .fill(&mut planes[..triangles.len()], triangles);
     }
 
     /// Shades the quads block by block and adds their colours to the pixels; gives how many pixels
-    /// that was, and what the shading took.
+    /// that was.
     fn shade_quads(
         &self,
         rect: &Rect,
         scratch: &mut Scratch,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
-    ) -> (u64, f64) {
+    ) -> u64 {
         let Scratch { quads, planes, grounds, colors, canvas, .. } = scratch;
         // One over a power of two: shares of a pixel add up to 1 without rounding.
-        let share = 1.0 / self.settings.msaa as f32;
+        let share = 1.0 / self.drawn.settings.msaa as f32;
         let block_of = |quad: &SeenQuad| quad.origin.map(|c| usize::from(c) / SHADED_BLOCK);
-        let (mut num_shaded, mut shade_ms) = (0, 0.0);
+        let mut num_shaded = 0;
         // The list goes block by block, so each block is one run of it.
         for block in quads.chunk_by_mut(|a, b| block_of(a) == block_of(b)) {
             // The stable sort keeps the order of places and triangles.
             block.sort_by_key(|quad| quad.group);
             for quads in block.chunk_by(|a, b| a.group == b.group) {
                 colors.clear();
-                let start = (self.clock)();
                 let [material, group] =
                     grounds[quads[0].triangle as usize].map(|index| index as usize);
                 shade(&QuadBlock { material, group, tile: rect.min, quads, planes }, colors);
-                shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {
                     // A pair of whole quads is stored; where others may add their share, it is
                     // added.
@@ -298,13 +308,13 @@ impl Painter<'_> {
                 }
             }
         }
-        (num_shaded, shade_ms)
+        num_shaded
     }
 
     /// Whether the triangle is all that the quad's samples see.
     #[inline(always)]
     fn is_whole(&self, quad: &SeenQuad) -> bool {
-        quad.coverage == [self.settings.msaa as u8; 4]
+        quad.coverage == [self.drawn.settings.msaa as u8; 4]
     }
 
     /// Whether every sample of the tile sees a triangle.
@@ -312,11 +322,11 @@ impl Painter<'_> {
         // A sample counts for one triangle at most, so only full coverage reaches the product.
         let num_seen: u64 = quads.iter().flat_map(|quad| quad.coverage).map(u64::from).sum();
         let [width, height] = [0, 1].map(|i| (rect.max[i] - rect.min[i]) as u64);
-        num_seen == width * height * u64::from(self.settings.msaa)
+        num_seen == width * height * u64::from(self.drawn.settings.msaa)
     }
 
     fn background(&self) -> [f32; 4] {
-        let [r, g, b, a] = self.scene.background;
+        let [r, g, b, a] = self.drawn.scene.background;
         [r * a, g * a, b * a, a]
     }
 }

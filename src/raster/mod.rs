@@ -12,6 +12,7 @@
 //! by triangle.
 
 mod attributes;
+mod behind;
 mod bin;
 mod block;
 mod canvas;
@@ -27,6 +28,7 @@ mod scratch;
 mod small;
 mod tile;
 
+pub use behind::{Behind, Follow};
 pub use bin::Bins;
 pub use block::QuadBlock;
 pub use centers::{CenterRow, CenterTile};

@@ -22,6 +22,8 @@ pub struct AttributePlanes {
     pub view: [Plane; 3],
     /// World-space attributes; only kept under `Lighting::Lit`.
     pub lit: Option<Box<LitPlanes>>,
+    /// The index of the mesh, and of the triangle in it.
+    pub triangle: [u32; 2],
 }
 
 /// World-space attributes of one triangle, over w.
@@ -35,8 +37,6 @@ pub struct LitPlanes {
     pub tangent_u: [Plane; 3],
     /// dP/dv; 0 without texture coordinates.
     pub tangent_v: [Plane; 3],
-    /// The index of the mesh, and of the triangle in it.
-    pub triangle: [u32; 2],
 }
 
 /// World-space attributes at eight pixels.

@@ -1,5 +1,6 @@
 //! What drawing one tile needs in memory.
 
+use super::behind::FollowScratch;
 use super::canvas::Canvas;
 use super::gather::SeenQuad;
 use super::quad::AttributePlanes;
@@ -12,6 +13,7 @@ pub(super) struct Scratch {
     /// The tile's triangles; places in it are local indices.
     pub(super) list: Vec<u32>,
     pub(super) visibility: VisibilityBuffer,
+    pub(super) followed: FollowScratch,
     pub(super) quads: Vec<SeenQuad>,
     /// Slot in `planes` of each local index, or [`NONE`].
     pub(super) slots: Vec<u32>,

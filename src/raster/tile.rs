@@ -8,13 +8,13 @@
 use super::edge::{Edges, Rect, Row};
 use super::grid::bounds;
 use super::small::SmallEdges;
-use crate::geometry::{Geometry, ScreenTriangle, offset_bounds, sample_offsets};
+use crate::geometry::{Geometry, Plane, ScreenTriangle, offset_bounds, sample_offsets};
 use crate::simd::{f32x8, i32x8, lane_indices, u32x8};
 
 /// No triangle.
 pub(super) const NONE: u32 = u32::MAX;
 /// Farther than any triangle: a floor's 1 / w may round to 0 or below at its horizon.
-const FARTHEST: f32 = f32::NEG_INFINITY;
+pub(super) const FARTHEST: f32 = f32::NEG_INFINITY;
 
 /// What each sample of a tile sees.
 #[derive(Clone, Debug, Default)]
@@ -23,8 +23,8 @@ pub(super) struct VisibilityBuffer {
     /// Lane vectors a row, and rows.
     num_columns: usize,
     num_rows: usize,
-    inverse_w: Vec<f32x8>,
-    triangles: Vec<u32x8>,
+    pub(super) inverse_w: Vec<f32x8>,
+    pub(super) triangles: Vec<u32x8>,
     /// Depth of the farthest sample when last scanned; anything behind it is hidden: [`FARTHEST`]
     /// while a sample sees nothing.
     hidden: f32,
@@ -120,24 +120,37 @@ impl VisibilityBuffer {
         index: u32,
         rect: &Rect,
     ) {
-        let offsets = sample_offsets(S as u32);
-        let [dx, dy, constant] = triangle.depth;
         let index = u32x8::splat(index);
         cover::<S>(triangle, &bounds(triangle, rect, offset_bounds(S as u32)), &mut |row: Row| {
-            let [offset_x, offset_y] =
-                offsets[row.sample].map(|offset| offset as f32 * (1.0 / 256.0));
-            // Places count from the frame's corner and not from the tile's: the same bits of depth
-            // whatever the tiling.
-            let x = lane_indices() + f32x8::splat(row.x as f32 + offset_x);
-            let y = row.y as f32 + offset_y;
-            let inverse_w = x * f32x8::splat(dx) + f32x8::splat(y * dy) + f32x8::splat(constant);
-            let at = self.at(
-                row.sample,
-                (row.x - self.origin[0]) as usize / 8,
-                (row.y - self.origin[1]) as usize,
-            );
+            let (at, inverse_w) = self.row::<S>(&row, triangle.depth);
             self.test(at, inverse_w, row.mask, index);
         });
+    }
+
+    /// Where the samples of a row of eight pixels are kept, and the 1 / w of a plane there.
+    #[inline(always)]
+    pub(super) fn row<const S: usize>(
+        &self,
+        row: &Row,
+        [dx, dy, constant]: Plane,
+    ) -> (usize, f32x8) {
+        let offset = sample_offsets(S as u32)[row.sample];
+        let [offset_x, offset_y] = offset.map(|offset| offset as f32 * (1.0 / 256.0));
+        // Places count from the frame's corner and not from the tile's: the same bits of depth
+        // whatever the tiling.
+        let x = lane_indices() + f32x8::splat(row.x as f32 + offset_x);
+        let y = row.y as f32 + offset_y;
+        let inverse_w = x * f32x8::splat(dx) + f32x8::splat(y * dy) + f32x8::splat(constant);
+        let column = (row.x - self.origin[0]) as usize / 8;
+        (self.at(row.sample, column, (row.y - self.origin[1]) as usize), inverse_w)
+    }
+
+    /// Where on the screen, in pixels, a lane of the samples lies that are kept at an index.
+    pub(super) fn place<const S: usize>(&self, at: usize, lane: usize) -> [f64; 2] {
+        let (row, column) = (at / self.num_columns, at % self.num_columns);
+        let offset = sample_offsets(S as u32)[row / self.num_rows];
+        let pixel = [8 * column + lane, row % self.num_rows];
+        [0, 1].map(|i| f64::from(self.origin[i]) + pixel[i] as f64 + f64::from(offset[i]) / 256.0)
     }
 
     /// Keeps the nearer of what is stored and what is drawn.

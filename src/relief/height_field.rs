@@ -51,6 +51,12 @@ impl HeightField {
         &self.maxima
     }
 
+    /// A height, 0 to just above 1, that no relief reaches in the node that holds a folded cell.
+    #[inline(always)]
+    pub(super) fn height_above(&self, level: i32, cell: [i32; 2]) -> f64 {
+        f64::from(self.maxima.above_one(level, cell.map(|c| c.max(0))))
+    }
+
     /// The level that a ray of that many texels begins on: a node holds about a fourth of its way.
     pub fn first_level(&self, length: f32) -> i32 {
         // The exponent is the logarithm rounded down; a fourth is two levels less.

@@ -71,4 +71,13 @@ impl Maxima {
         let step = |place: u32| f32::from(self.steps[place as usize]);
         RayLanes::new(places.map(step)) * STEP + STEP
     }
+
+    /// [`Self::above`] of one node.
+    #[inline(always)]
+    pub(super) fn above_one(&self, level: i32, [x, y]: [i32; 2]) -> f32 {
+        let [start, width] =
+            [self.starts, self.widths].map(|of_levels| of_levels.as_array()[level as usize]);
+        let [x, y] = [x, y].map(|cell| (cell >> level) as u32);
+        f32::from(self.steps[(start + y * width + x) as usize]) * STEP + STEP
+    }
 }

@@ -17,6 +17,7 @@ mod march;
 mod maxima;
 mod patch;
 pub mod seen;
+mod segment;
 mod shadow;
 mod walk;
 
@@ -26,4 +27,5 @@ pub use height_cells::{CellRays, HeightCells};
 pub use height_field::HeightField;
 pub use level_loss::LevelLoss;
 pub use march::{ViewRays, march, march_all};
+pub use segment::ReliefPlace;
 pub use shadow::{LitParts, RowScratch};

@@ -1,8 +1,10 @@
 //! Pixels under the truth's light: every sample of the screen is lit by rays from its own hit.
 
-use super::ground::{Ground, eval, in_lanes, pixel_center, surface_point};
+use super::ground::{Ground, eval, in_lanes, of_hits, pixel_center, surface_point};
+use super::outlines::Outlines;
 use crate::filter::{Batch, Filtered, SampleOffsets, Scratch};
 use crate::footprint::{Footprint, FootprintRule, Footprints};
+use crate::light::SurfacePoint;
 use crate::light::exact::{ExactLight, Hit, Sequence, Spot};
 use crate::raster::{AttributePlanes, QuadPair};
 use crate::scene::Material;
@@ -31,6 +33,8 @@ pub(super) struct Exact<'a> {
     pub(super) material: &'a Material,
     /// The material's texture, if it has one.
     pub(super) ground: Option<Ground<'a>>,
+    /// Where rays end on curved meshes.
+    pub(super) outlines: Option<&'a Outlines<'a>>,
 }
 
 impl Exact<'_> {
@@ -69,12 +73,20 @@ impl Exact<'_> {
         scratch: &mut Scratch,
     ) -> (Vec3, f32) {
         let Samples { planes, x, y, num, .. } = *samples;
-        let rays = ground.rays(planes, ([x, y], num), (pixel, self.is_traced));
+        let hits = self.outlines.and_then(|all| ground.hits(all, planes, ([x, y], num)));
+        let rays = match &hits {
+            Some(hits) => of_hits(hits, pixel),
+            None => ground.rays(planes, ([x, y], num), (pixel, self.is_traced)),
+        };
         let mut texels = [Filtered::default()];
         let batch = Batch { pixels: &[rays], lights: &[], curved: None, is_alone: false };
         self.filter.colors(ground.prepared, &batch, scratch, &mut texels);
         let [texels] = texels;
-        self.sum(samples, rays.covered, |lane| {
+        let point = |lane: usize| {
+            let (outlines, hit) = (self.outlines?, hits.as_ref()?[lane].as_ref()?);
+            Some(outlines.point(planes.triangle[0], hit))
+        };
+        self.sum(samples, rays.covered, point, |lane| {
             let (texel, ray) = (texels.lane(lane), rays.lane(lane));
             let albedo = ground.color_of(ground.prepared.surface(), &texel);
             let (relief, normal) = (ground.prepared.field(), Vec3::from(texel.normal));
@@ -89,7 +101,7 @@ impl Exact<'_> {
         let wanted = (0xff_u16 >> (8 - num)) as u8;
         let (base, albedo, normal) = ([0.0; 2], self.material.base_color, Vec3::Z);
         let spot = Spot { relief: None, base, place: base, albedo, normal };
-        self.sum(samples, is_before & wanted, |_| spot)
+        self.sum(samples, is_before & wanted, |_| None, |_| spot)
     }
 
     /// The sum of the colours of the samples that see a surface, one by one in their order, so that
@@ -98,13 +110,15 @@ impl Exact<'_> {
         &self,
         samples: &Samples,
         covered: u8,
+        point: impl Fn(usize) -> Option<SurfacePoint>,
         spot: impl Fn(usize) -> Spot<'a>,
     ) -> (Vec3, f32) {
         let (mut sum, mut num_found) = (Vec3::ZERO, 0.0);
         for lane in set_bits(covered) {
             let place = [samples.x.as_array()[lane], samples.y.as_array()[lane]];
             // Planes of lit frames have all that makes a point.
-            let Some(point) = surface_point(samples.planes, place) else { continue };
+            let of_polygon = || surface_point(samples.planes, place);
+            let Some(point) = point(lane).or_else(of_polygon) else { continue };
             let spot = spot(lane);
             let finish = self.material.finish(|map| map.at(spot.place));
             let hit = Hit { point, finish, spot };

@@ -2,11 +2,13 @@
 
 use super::mapped::Glow;
 use super::open_sky::OpenSky;
+use super::outlines::Outlines;
 use crate::filter::Prepared;
 use crate::footprint::{Footprint, Footprints};
 use crate::light::{LocalLights, SurfacePoint};
 use crate::raster::{AttributePlanes, LitPlanes, Plane, QuadPair};
 use crate::scene::{Finish, Material};
+use crate::shell::ReliefHit;
 use crate::simd::PixelLanes;
 use crate::texture::{FULL_F32, Surface, Texel};
 use glam::Vec3;
@@ -80,6 +82,18 @@ impl Ground<'_> {
         Footprints::of_samples((&uv, &view), field, is_traced, pixel, covered)
     }
 
+    /// Where the rays of samples hit the relief of a curved mesh; `None` where it is flat.
+    pub(super) fn hits(
+        &self,
+        outlines: &Outlines,
+        planes: &AttributePlanes,
+        ([x, y], num_samples): ([PixelLanes; 2], usize),
+    ) -> Option<[Option<ReliefHit>; 8]> {
+        let is_curved = self.prepared.field().is_some() && outlines.is_curved(planes.triangle[0]);
+        let asked = (0xff_u16 >> (8 - num_samples)) as u8;
+        is_curved.then(|| outlines.hits(planes.triangle, [x, y], asked))
+    }
+
     /// Whether lights are evaluated place by place.
     pub(crate) fn asks_for_lights(&self) -> bool {
         self.is_lit && self.baked.is_none() && self.swept.is_none()
@@ -114,6 +128,15 @@ impl Ground<'_> {
         let scale = self.scale();
         std::array::from_fn(|c| stored[c] * self.material.base_color[c] * scale)
     }
+}
+
+/// Samples of a pixel that hit a relief.
+pub(super) fn of_hits(hits: &[Option<ReliefHit>; 8], pixel: &Footprint) -> Footprints {
+    let uv = |axis: usize| {
+        PixelLanes::new(hits.map(|hit| hit.map_or(0.0, |hit| hit.place.uv[axis] as f32)))
+    };
+    let covered = hits.iter().enumerate().map(|(lane, hit)| u8::from(hit.is_some()) << lane).sum();
+    Footprints::of_hits([uv(0), uv(1)], pixel, covered)
 }
 
 pub(super) fn in_lanes(colors: &[Vec3; 8]) -> [PixelLanes; 3] {

@@ -8,8 +8,9 @@ use crate::filter::Prepared;
 use crate::light::Disc;
 use crate::light::exact::{Ceiling, Occluders};
 use crate::light::reflection::Reflectance;
-use crate::scene::{Light, Material, Scene};
+use crate::scene::{Light, Material, Mesh, Scene};
 use crate::settings::{Lighting, Settings};
+use crate::shell::Shell;
 use crate::texture::Surface;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -40,6 +41,8 @@ pub(crate) struct PreparedScene {
     ceilings: OnceLock<Vec<Option<Ceiling>>>,
     /// The same of the sky.
     skies: OnceLock<Skies>,
+    /// The relief of each mesh that has one, for rays that may pass it or meet another mesh in it.
+    shells: OnceLock<Vec<Option<Shell>>>,
 }
 
 impl PreparedScene {
@@ -78,25 +81,36 @@ impl PreparedScene {
             })
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
-        let (reflectance, occluders, ceilings, skies) = Default::default();
+        let (reflectance, occluders, ceilings, skies, shells) = Default::default();
+        let (baked, mapped) = (None, None);
         Self {
             surfaces,
             flat,
             has_points: scene.lights.iter().any(|light| matches!(light, Light::Point { .. })),
             of_material,
-            baked: None,
-            mapped: None,
+            baked,
+            mapped,
             reflectance,
             occluders,
             ceilings,
             skies,
+            shells,
         }
+    }
+
+    /// Forgets what is made of meshes, which have changed.
+    pub(crate) fn forget_meshes(&mut self) {
+        self.baked = None;
+        (self.occluders, self.ceilings, self.skies, self.shells) = Default::default();
     }
 
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
     /// it.
     pub(crate) fn make_ready(&mut self, scene: &Scene, settings: &Settings) {
         let is_lit = settings.lighting == Lighting::Lit;
+        if settings.has_outlines() {
+            self.shells(scene);
+        }
         if is_lit {
             self.reflectance();
         }
@@ -164,6 +178,18 @@ impl PreparedScene {
     /// The triangles of the scene that this was made for.
     pub(crate) fn occluders(&self, scene: &Scene) -> &Occluders {
         self.occluders.get_or_init(|| Occluders::new(scene))
+    }
+
+    /// The relief of each mesh that has one.
+    pub(crate) fn shells(&self, scene: &Scene) -> &[Option<Shell>] {
+        self.shells.get_or_init(|| {
+            let shell = |mesh: &Mesh| {
+                let field = self.of_material(mesh.material, true)?.field()?;
+                let is_textured = !mesh.tex_coords.is_empty();
+                is_textured.then(|| Shell::new(mesh, field.relief_depth))
+            };
+            scene.meshes.par_iter().map(shell).collect()
+        })
     }
 
     /// Whether any light is a point.

@@ -2,8 +2,9 @@
 
 use super::curved_lights::CurvedLights;
 use super::exact::Exact;
-use super::ground::{Ground, in_lanes, pixel_center, surface_point};
+use super::ground::{Ground, in_lanes, of_hits, pixel_center, surface_point};
 use super::mapped::Glow;
+use super::outlines::Outlines;
 use super::points::HiddenLights;
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Samples, Scratch, Traits, Work};
@@ -39,6 +40,8 @@ pub(crate) struct Shader<'a> {
     samples: Option<SampleOffsets>,
     /// What lights each sample by itself, where that is asked for.
     exact: Option<ExactLight<'a>>,
+    /// Where rays end on curved meshes; `None` where all reliefs are taken for flat.
+    outlines: Option<Outlines<'a>>,
     pool: &'a Pool<ShadeScratch>,
     num_texels: [AtomicU64; 2],
 }
@@ -57,6 +60,7 @@ impl<'a> Shader<'a> {
         scene: &'a Scene,
         settings: &'a Settings,
         prepared: &'a PreparedScene,
+        outlines: Option<Outlines<'a>>,
         pool: &'a Pool<ShadeScratch>,
     ) -> Self {
         let traits = settings.filter.traits();
@@ -65,7 +69,7 @@ impl<'a> Shader<'a> {
         let exact = is_exact.then(|| ExactLight { scene, occluders: prepared.occluders(scene) });
         let samples = traits.samples.map(Samples::offsets);
         let num_texels = Default::default();
-        Self { scene, settings, prepared, traits, samples, exact, pool, num_texels }
+        Self { scene, settings, prepared, traits, samples, exact, outlines, pool, num_texels }
     }
 
     /// What filtering took so far.
@@ -84,7 +88,8 @@ impl<'a> Shader<'a> {
         let mut scratch = self.pool.take();
         if let (Some(samples), Some(light)) = (&self.samples, &self.exact) {
             let (filter, is_traced) = (&self.settings.filter, self.traits.rule.is_traced);
-            let exact = Exact { light, samples, filter, is_traced, material, ground };
+            let outlines = self.outlines.as_ref();
+            let exact = Exact { light, samples, filter, is_traced, material, ground, outlines };
             return colors
                 .extend(block.pairs().map(|pair| exact.colors(&pair, &mut scratch.filter)));
         }
@@ -298,16 +303,23 @@ impl<'a> Shader<'a> {
         // All samples share their pixel's derivatives, those of the flat polygon.
         let pixels =
             Footprints::of_quads(&pair.uv, &none, None, &FootprintRule::FLAT, pair.covered_bits());
+        // Only the truth follows rays over curved surfaces; to others all is flat.
+        let is_exact = self.traits.samples.is_some_and(|samples| samples.is_exact);
+        let outlines = self.outlines.as_ref().filter(|_| is_exact);
         for lane in pair.covered() {
             let [center_x, center_y] = pixel_center(pair, lane);
             for &([dx, dy], num_samples) in groups {
                 let (x, y) = (dx + center_x, dy + center_y);
                 let planes = pair.planes[lane / 4];
-                let rays = ground.rays(
-                    planes,
-                    ([x, y], num_samples),
-                    (&pixels.lane(lane), self.traits.rule.is_traced),
-                );
+                let hits = outlines.and_then(|all| ground.hits(all, planes, ([x, y], num_samples)));
+                let rays = match hits {
+                    Some(hits) => of_hits(&hits, &pixels.lane(lane)),
+                    None => ground.rays(
+                        planes,
+                        ([x, y], num_samples),
+                        (&pixels.lane(lane), self.traits.rule.is_traced),
+                    ),
+                };
                 if ground.asks_for_lights() {
                     let center = [center_x, center_y];
                     lights

@@ -66,8 +66,7 @@ impl Skies {
         let Some(lit) = pair.lit() else { return skies };
         let is_back = frame.is_back.to_bitmask();
         for lane in pair.covered() {
-            let Some(planes) = pair.planes[lane / 4].lit.as_deref() else { continue };
-            let [mesh, triangle] = planes.triangle.map(|i| i as usize);
+            let [mesh, triangle] = pair.planes[lane / 4].triangle.map(|i| i as usize);
             let place = Vec3::from(lit.position.map(|axis| axis.as_array()[lane]));
             let side = usize::from(is_back >> lane & 1 == 1);
             skies[lane] = self.of_mesh[mesh].at(&scene.meshes[mesh], (triangle, side), place);

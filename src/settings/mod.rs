@@ -70,6 +70,9 @@ pub struct Settings {
     /// Whether the view ray is traced to the relief; `false` draws the polygon's own texels.
     /// Default: `true`.
     pub parallax: bool,
+    /// Whether a traced relief has an outline and a depth: rays may pass it where its mesh is
+    /// curved, and meshes that meet it are cut by it; `false`: both by its polygons. Default: `true`.
+    pub silhouette: bool,
     /// Whether lights are evaluated. Default: [`Lighting::Unlit`].
     pub lighting: Lighting,
     /// How many times the picture's light, the background's too, is doubled: -32 to 32. Default: 0.
@@ -98,6 +101,7 @@ impl Default for Settings {
             region: None,
             filter: Filter::default(),
             parallax: true,
+            silhouette: true,
             lighting: Lighting::Unlit,
             exposure: 0.0,
             tone: Tone::None,
@@ -112,6 +116,11 @@ impl Settings {
     /// What is drawn: the region, or the whole frame.
     pub fn drawn(&self) -> Region {
         self.region.unwrap_or(Region { x: 0, y: 0, width: self.width, height: self.height })
+    }
+
+    /// Whether relief is traced and has outlines.
+    pub(crate) fn has_outlines(&self) -> bool {
+        self.parallax && self.silhouette
     }
 
     /// Checks every field against its range.

@@ -108,6 +108,7 @@ impl SettingsOptions {
             region: frame.region.as_ref().map(|region| region.value),
             filter: filter.chosen(),
             parallax: filter.parallax.unwrap_or(default.parallax),
+            silhouette: filter.silhouette.unwrap_or(default.silhouette),
             lighting: frame.lighting.unwrap_or(if look.is_lit {
                 Lighting::Lit
             } else {
@@ -139,6 +140,7 @@ impl From<&Settings> for SettingsOptions {
         };
         let mut filter = FilterOptions::from(settings.filter);
         filter.parallax = Some(settings.parallax);
+        filter.silhouette = Some(settings.silhouette);
         Self { frame, filter }
     }
 }
@@ -217,7 +219,7 @@ mod tests {
 
     #[test]
     fn each_option_sets_its_field() {
-        let line = "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --exposure -1.5 --tone neutral --lighting lit --parallax off --filter ewa";
+        let line = "--size 64x36 --region 8,4,32,16 --msaa 8 --cull --tile 16 --exposure -1.5 --tone neutral --lighting lit --parallax off --silhouette off --filter ewa";
         let options = options(&format!("{line} {OF_FILTERS}")).unwrap();
         let (derivatives, formulas) = (Derivatives::Flat, Formulas::Printed);
         let (texel_budget, max_anisotropy) = (0, 8.0);
@@ -262,6 +264,7 @@ mod tests {
             region: Some(Region { x: 8, y: 4, width: 32, height: 16 }),
             filter: Filter::Ewa(ewa),
             parallax: false,
+            silhouette: false,
             lighting: Lighting::Lit,
             cull_back_faces: true,
             msaa: 8,

@@ -77,6 +77,9 @@ struct PatchSun {
 /// Least part of a height over which a sun rises: two steps of a byte.
 const LEAST_WIDTH: f32 = 1.0 / 128.0;
 
+/// A sun that stands lower than this behind all pixels of a patch lights no place of it.
+const LEAST_DARK: f32 = 1.0 / 16.0;
+
 impl PatchSun {
     fn new(curved: &Curved, sun: usize, picks: &[u8], fit: &Fit) -> Self {
         let at = |pick: &u8| (curved.slant(usize::from(pick / 8), sun), usize::from(pick % 8));
@@ -139,8 +142,14 @@ impl<'a> PatchLight<'a> {
         pixels: &[PixelOnLines],
     ) -> Self {
         let fit = Fit::new(pixels);
-        let sun = |sun: usize| PatchSun::new(curved, sun, picks, &fit);
-        let suns = (0..curved.suns.len()).map(sun).collect();
+        let shines = |sun: &usize| {
+            let height = |pick: &u8| {
+                curved.slant(usize::from(pick / 8), *sun).height.as_array()[usize::from(pick % 8)]
+            };
+            picks.iter().any(|pick| height(pick) > -LEAST_DARK)
+        };
+        let suns = (0..curved.suns.len()).filter(shines);
+        let suns = suns.map(|sun| PatchSun::new(curved, sun, picks, &fit)).collect();
         let sky = (!curved.skies.is_empty()).then(|| PatchSky::new(curved, picks, &fit));
         let point = |point: usize| PatchPoint::new(curved, point, picks, &fit);
         let points = (0..curved.points.len()).map(point).collect();

@@ -1,0 +1,338 @@
+//! A view ray on its way through the prisms of a relief.
+//!
+//! Seen along the ray, which is the origin then, corner `i` of a prism's triangle at depth `t` is at
+//! `p_i + t o_i`. The ray is on the line through two corners where their cross product, a quadratic
+//! in `t`, is 0; both triangles at an edge find the same `t` there. Between two sides of a prism the
+//! ray is cut into pieces that are straight in the texture. All in f64, one ray at a time.
+
+use super::{NONE, Shell};
+use crate::relief::{HeightField, ReliefPlace};
+use crate::scene::Mesh;
+use glam::{DVec2, DVec3};
+
+/// Most triangles of a ray: only a mesh that is knotted has more; the ray then ends where it is.
+const MOST_TRIANGLES: usize = 4096;
+
+/// How much offsets at the corners of a triangle may differ for a piece to be straight, as a share
+/// of their length: a sixteenth of a prism's side.
+const STRAIGHT: f64 = 1.0 / 16.0;
+
+/// Most pieces of a prism.
+const MOST_PIECES: f64 = 16.0;
+
+/// A ray from the eye.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewRay {
+    /// Where it begins.
+    pub eye: DVec3,
+    /// Where it goes, of any length; distances are counted in it.
+    pub direction: DVec3,
+}
+
+/// What a ray that enters a relief meets.
+#[derive(Clone, Copy, Debug)]
+pub enum Met {
+    /// Relief.
+    Relief(ReliefHit),
+    /// No relief is there: the polygon itself.
+    Polygon,
+    /// Nothing: so far from the eye it leaves the relief through a polygon.
+    Nothing(f64),
+}
+
+/// Where a ray meets relief.
+#[derive(Clone, Copy, Debug)]
+pub struct ReliefHit {
+    /// The triangle above.
+    pub triangle: u32,
+    /// The shares of its corners.
+    pub shares: [f64; 3],
+    /// Place on the texture, and depth.
+    pub place: ReliefPlace,
+    /// Distance from the eye.
+    pub distance: f64,
+}
+
+/// A point of the ray within a prism.
+#[derive(Clone, Copy)]
+struct Point {
+    shares: [f64; 3],
+    place: ReliefPlace,
+}
+
+/// A ray on its way.
+struct Walk<'a> {
+    shell: &'a Shell,
+    mesh: &'a Mesh,
+    field: &'a HeightField,
+    ray: &'a ViewRay,
+    /// Two axes across the ray.
+    axes: [DVec3; 2],
+    /// 1 where the mesh is seen from the front, -1 where its back shows relief on the other side.
+    side: f64,
+}
+
+/// A triangle with its prism, seen along the ray.
+struct Prism {
+    triangle: u32,
+    p: [DVec2; 3],
+    o: [DVec2; 3],
+    num_pieces: u32,
+}
+
+impl Shell {
+    /// What a ray meets that enters the relief of the mesh through a triangle, or beside it.
+    pub fn follow(&self, mesh: &Mesh, field: &HeightField, triangle: u32, ray: &ViewRay) -> Met {
+        self.walk::<false>(mesh, field, triangle, ray)
+    }
+
+    /// The same where a place within the relief, not before the hit, will do: a few heights are
+    /// looked at, and none between. What is said to be nothing may be a hit.
+    pub fn probe(&self, mesh: &Mesh, field: &HeightField, triangle: u32, ray: &ViewRay) -> Met {
+        self.walk::<true>(mesh, field, triangle, ray)
+    }
+
+    fn walk<const PROBES: bool>(
+        &self,
+        mesh: &Mesh,
+        field: &HeightField,
+        triangle: u32,
+        ray: &ViewRay,
+    ) -> Met {
+        let along = ray.direction.normalize_or(DVec3::Z);
+        let (x, y) = along.any_orthonormal_pair();
+        // Turned so that what is seen from the front is counter-clockwise.
+        let mut walk = Walk { shell: self, mesh, field, ray, axes: [y, x], side: 1.0 };
+        let prism = walk.prism(triangle);
+        if prism.area(0.0) < 0.0 {
+            walk.side = -1.0;
+        }
+        walk.run::<PROBES>(triangle)
+    }
+}
+
+impl Walk<'_> {
+    fn run<const PROBES: bool>(&self, triangle: u32) -> Met {
+        let Some(mut prism) = self.entry(triangle) else {
+            return Met::Nothing(self.distance_of(triangle));
+        };
+        let mut from = self.point(&prism, prism.shares(0.0), 0.0);
+        let (mut entry, mut goes_down, mut is_beyond) = (3, true, false);
+        for _ in 0..MOST_TRIANGLES {
+            let t = from.place.depth;
+            let way = if goes_down { 1.0 } else { -1.0 };
+            // Find the side by which the ray leaves the prism, unless that is above or below.
+            let left = if goes_down { 1.0 - t } else { t };
+            let edges = if is_beyond { 0..0 } else { 0..3 };
+            let exits =
+                edges.map(|edge| (prism.exit(edge, [t, way, self.side], edge == entry), edge));
+            let (rise, edge) = exits.fold((left, 3), |a, b| if b.0 < a.0 { b } else { a });
+            if let Some(hit) = self.pieces::<PROBES>(&prism, &mut from, (t + way * rise, edge)) {
+                return Met::Relief(hit);
+            }
+            if edge == 3 {
+                // At full depth every height is met.
+                return if goes_down {
+                    Met::Relief(self.hit(&prism, &from))
+                } else {
+                    Met::Nothing(self.distance(&prism, &from))
+                };
+            }
+            match self.shell.neighbors[prism.triangle as usize][edge] {
+                // Beyond a border the last triangle goes on: nobody looks through a seam.
+                NONE => is_beyond = true,
+                next => {
+                    prism = self.prism(next / 3);
+                    entry = next as usize % 3;
+                    goes_down = self.side * prism.area(from.place.depth) > 0.0;
+                    // The texture may go on in other coordinates.
+                    let shares = prism.shares_on(entry, from.place.depth);
+                    from = self.point(&prism, shares, from.place.depth);
+                }
+            }
+        }
+        Met::Relief(self.hit(&prism, &from))
+    }
+
+    /// The prism where the ray passes the polygons, starting to look from a triangle near by; `None`
+    /// where it passes beside the mesh.
+    fn entry(&self, triangle: u32) -> Option<Prism> {
+        let mut prism = self.prism(triangle);
+        for _ in 0..64 {
+            let outside = (0..3)
+                .map(|edge| (self.side * prism.edge(edge)[0], edge))
+                .fold((0.0, 3), |a, b| if b.0 < a.0 { b } else { a });
+            let next = match outside.1 {
+                3 => NONE,
+                edge => self.shell.neighbors[prism.triangle as usize][edge],
+            };
+            if next == NONE {
+                break;
+            }
+            let beyond = self.prism(next / 3);
+            if self.side * beyond.area(0.0) <= 0.0 {
+                return None;
+            }
+            prism = beyond;
+        }
+        Some(prism)
+    }
+
+    fn prism(&self, triangle: u32) -> Prism {
+        let Self { shell, mesh, ray, axes: [x, y], side, .. } = self;
+        let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
+        let across = |v: DVec3| DVec2::new(v.dot(*x), v.dot(*y));
+        let offsets = corners.map(|i| shell.offsets[i].as_dvec3() * *side);
+        let bend = (offsets[1] - offsets[0])
+            .length_squared()
+            .max((offsets[2] - offsets[0]).length_squared());
+        let bend = (bend / offsets[0].length_squared().max(f64::MIN_POSITIVE)).sqrt();
+        Prism {
+            triangle,
+            p: corners.map(|i| across(mesh.positions[i].as_dvec3() - ray.eye)),
+            o: offsets.map(across),
+            num_pieces: (bend / STRAIGHT).ceil().clamp(1.0, MOST_PIECES) as u32,
+        }
+    }
+
+    /// Goes on within a prism to a depth, where the ray leaves by an edge or, for 3, by none; gives
+    /// the hit, if there is one.
+    fn pieces<const PROBES: bool>(
+        &self,
+        prism: &Prism,
+        from: &mut Point,
+        (end, edge): (f64, usize),
+    ) -> Option<ReliefHit> {
+        let start = from.place.depth;
+        for i in 1..=prism.num_pieces {
+            let is_last = i == prism.num_pieces;
+            let part = f64::from(i) / f64::from(prism.num_pieces);
+            let depth = if is_last { end } else { start + (end - start) * part };
+            let shares = if is_last && edge < 3 {
+                prism.shares_on(edge, depth)
+            } else {
+                prism.shares(depth)
+            };
+            // A triangle seen edge on has no place.
+            if !shares.iter().all(|share| share.is_finite()) {
+                return Some(self.hit(prism, from));
+            }
+            let to = self.point(prism, shares, depth);
+            let part = match PROBES {
+                true => self.field.holds(&to.place).then_some(1.0),
+                false => self.field.first_hit(&from.place, &to.place),
+            };
+            if let Some(part) = part {
+                let shares =
+                    [0, 1, 2].map(|i| from.shares[i] + (to.shares[i] - from.shares[i]) * part);
+                let place = from.place.toward(&to.place, part);
+                return Some(self.hit(prism, &Point { shares, place }));
+            }
+            *from = to;
+        }
+        None
+    }
+
+    fn point(&self, prism: &Prism, shares: [f64; 3], depth: f64) -> Point {
+        let corners = self.mesh.triangles[prism.triangle as usize].map(|i| i as usize);
+        let mut uv = [0.0; 2];
+        for (i, share) in corners.into_iter().zip(shares) {
+            let coordinates = self.mesh.tex_coords[i];
+            uv[0] += share * f64::from(coordinates.x);
+            uv[1] += share * f64::from(coordinates.y);
+        }
+        Point { shares, place: ReliefPlace { uv, depth } }
+    }
+
+    fn hit(&self, prism: &Prism, at: &Point) -> ReliefHit {
+        let (shares, place) = (at.shares, at.place);
+        ReliefHit { triangle: prism.triangle, shares, place, distance: self.distance(prism, at) }
+    }
+
+    /// How far from the eye a point is.
+    fn distance(&self, prism: &Prism, at: &Point) -> f64 {
+        let corners = self.mesh.triangles[prism.triangle as usize].map(|i| i as usize);
+        let mut place = -self.ray.eye;
+        for (i, share) in corners.into_iter().zip(at.shares) {
+            let down = self.shell.offsets[i].as_dvec3() * (at.place.depth * self.side);
+            place += (self.mesh.positions[i].as_dvec3() + down) * share;
+        }
+        place.dot(self.ray.direction) / self.ray.direction.length_squared()
+    }
+
+    /// How far from the eye the first corner of a triangle is.
+    fn distance_of(&self, triangle: u32) -> f64 {
+        let corner = self.mesh.triangles[triangle as usize][0] as usize;
+        let from_eye = self.mesh.positions[corner].as_dvec3() - self.ray.eye;
+        from_eye.dot(self.ray.direction) / self.ray.direction.length_squared()
+    }
+}
+
+impl Prism {
+    /// `c[0] + c[1] t + c[2] t^2`: above 0 where the ray is on the inner side of the edge from
+    /// corner `edge` to the next one, if the triangle is seen from the front.
+    #[inline(always)]
+    fn edge(&self, edge: usize) -> [f64; 3] {
+        let (i, j) = (edge, (edge + 1) % 3);
+        let ([p, q], [o, r]) = ([self.p[i], self.p[j]], [self.o[i], self.o[j]]);
+        [p.perp_dot(q), p.perp_dot(r) + o.perp_dot(q), o.perp_dot(r)]
+    }
+
+    /// How far the ray goes down or up (`way`) from depth `t` to where it leaves by an edge;
+    /// infinite where it does not. By the edge of its entry it may leave, too.
+    #[inline(always)]
+    fn exit(&self, edge: usize, [t, way, side]: [f64; 3], is_entry: bool) -> f64 {
+        let [c0, c1, c2] = self.edge(edge);
+        let outer = if is_entry { 0.0 } else { side * way * (c0 + t * (c1 + t * c2)) };
+        leaves([outer.max(0.0), side * (c1 + 2.0 * t * c2), side * way * c2], is_entry)
+    }
+
+    /// Twice the area at a depth; below 0 where the triangle is seen from behind.
+    fn area(&self, t: f64) -> f64 {
+        let [a, b, c] = [0, 1, 2].map(|i| self.p[i] + self.o[i] * t);
+        (b - a).perp_dot(c - a)
+    }
+
+    /// The shares of the corners where the ray is at a depth.
+    fn shares(&self, t: f64) -> [f64; 3] {
+        let [a, b, c] = [0, 1, 2].map(|i| self.p[i] + self.o[i] * t);
+        let area = (b - a).perp_dot(c - a);
+        [b.perp_dot(c) / area, c.perp_dot(a) / area, a.perp_dot(b) / area]
+    }
+
+    /// The same where the ray is on an edge, by its length and not by areas: they are 0 where the
+    /// triangle is seen edge on.
+    fn shares_on(&self, edge: usize, t: f64) -> [f64; 3] {
+        let (i, j) = (edge, (edge + 1) % 3);
+        let [a, b] = [i, j].map(|i| self.p[i] + self.o[i] * t);
+        let along = b - a;
+        let squared = along.length_squared();
+        let part = if squared > 0.0 { (-a.dot(along) / squared).clamp(0.0, 1.0) } else { 0.5 };
+        let mut shares = [0.0; 3];
+        (shares[i], shares[j]) = (1.0 - part, part);
+        shares
+    }
+}
+
+/// Where `c[0] + c[1] s + c[2] s^2`, at least 0 at 0, goes below 0; from an edge by which the ray
+/// came, that is not at once.
+#[inline(always)]
+fn leaves([c0, c1, c2]: [f64; 3], is_entry: bool) -> f64 {
+    if c0 == 0.0 {
+        return match c1 < 0.0 || (c1 == 0.0 && c2 < 0.0) {
+            true if is_entry => f64::INFINITY,
+            true => 0.0,
+            false if c2 < 0.0 => -c1 / c2,
+            false => f64::INFINITY,
+        };
+    }
+    let discriminant = c1 * c1 - 4.0 * c2 * c0;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    // Both roots by the form that does not cancel.
+    let root = discriminant.sqrt();
+    let q = -0.5 * (c1 + if c1 >= 0.0 { root } else { -root });
+    let ahead = |root: f64| if root > 0.0 { root } else { f64::INFINITY };
+    ahead(c0 / q).min(ahead(q / c2))
+}
