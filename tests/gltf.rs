@@ -542,6 +542,15 @@ fn broken_files_are_refused_by_one_line_that_says_where() {
         let error = changed(from, to);
         assert!(error.contains(expected), "{to}: {error}");
     }
+    let load = |text: &str| refused(text.as_bytes());
+    assert!(load(r#"{"buffers":{"a":{}}}"#).contains("is glTF 1; only glTF 2"));
+    assert!(load(r#"{"asset":{"version":"1.1"}}"#).contains("is glTF 1.1; only glTF 2"));
+    assert!(load(r#"{"asset":{"version":"2.0"},"#).contains("is no valid glTF: EOF"));
+    let mut old = whole.clone();
+    old[4] = 1;
+    assert!(refused(&old).contains("GLB of version 1"));
+    // Animations are not played; what is wrong with them does not matter.
+    loaded(&Binary::square().glb(&square("{}", r#","animations":[{"channels":5}]"#)));
     let options = LoadOptions { max_triangles: 1, ..LoadOptions::default() };
     let error = load_gltf_bytes(&whole, &options).expect_err("a refusal");
     assert!(error.to_string().contains("max_triangles"), "{error}");

@@ -81,11 +81,13 @@ impl Mesh {
             let turned = along(normals, *n);
             (turned * (n.as_dvec3().length() / turned.length())).as_vec3()
         };
-        let Self { name, material, triangles, positions, tex_coords, normals: own, tangents } = self;
+        let Self { name, material, triangles, positions, tex_coords, normals: own, .. } = self;
+        let Self { tangents, colors, .. } = self;
         into.name.clone_from(name);
         into.material = *material;
         into.triangles.clone_from(triangles);
         into.tex_coords.clone_from(tex_coords);
+        into.colors.clone_from(colors);
         into.positions.clear();
         into.positions.extend(positions.iter().map(|p| (along([x, y, z], *p) + origin).as_vec3()));
         into.normals.clear();
