@@ -506,6 +506,12 @@ fn what_is_not_supported_is_refused_or_named() {
     let error = refused(&glb(r#","extensionsRequired":["KHR_draco_mesh_compression"]"#));
     assert!(error.contains("KHR_draco_mesh_compression, which is not supported"), "{error}");
     let warnings = loaded(&glb(r#","extensionsUsed":["KHR_materials_sheen"]"#)).warnings;
+    let still = loaded(&glb(r#","skins":[{"joints":[0]}],"animations":[]"#)).warnings;
+    assert_eq!(still, [""; 0], "no mesh has this skin");
+    let skinned = square("{}", r#","skins":[{"joints":[0]}]"#)
+        .replace(r#"{"mesh":0}"#, r#"{"mesh":0,"skin":0}"#);
+    let still = loaded(&Binary::square().glb(&skinned)).warnings;
+    assert_eq!(still, ["scene.gltf: skins are not supported; meshes stand still"]);
     assert_eq!(
         warnings,
         ["scene.gltf: extension KHR_materials_sheen is not supported; drawn without it"]
