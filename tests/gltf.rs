@@ -506,6 +506,12 @@ fn what_is_not_supported_is_refused_or_named() {
     let error = refused(&glb(r#","extensionsRequired":["KHR_draco_mesh_compression"]"#));
     assert!(error.contains("KHR_draco_mesh_compression, which is not supported"), "{error}");
     let warnings = loaded(&glb(r#","extensionsUsed":["KHR_materials_sheen"]"#)).warnings;
+    let still = loaded(&glb(r#","skins":[{"joints":[0]}],"animations":[]"#)).warnings;
+    assert_eq!(still, [""; 0], "no mesh has this skin");
+    let skinned = square("{}", r#","skins":[{"joints":[0]}]"#)
+        .replace(r#"{"mesh":0}"#, r#"{"mesh":0,"skin":0}"#);
+    let still = loaded(&Binary::square().glb(&skinned)).warnings;
+    assert_eq!(still, ["scene.gltf: skins are not supported; meshes stand still"]);
     assert_eq!(
         warnings,
         ["scene.gltf: extension KHR_materials_sheen is not supported; drawn without it"]
@@ -542,6 +548,15 @@ fn broken_files_are_refused_by_one_line_that_says_where() {
         let error = changed(from, to);
         assert!(error.contains(expected), "{to}: {error}");
     }
+    let load = |text: &str| refused(text.as_bytes());
+    assert!(load(r#"{"buffers":{"a":{}}}"#).contains("is glTF 1; only glTF 2"));
+    assert!(load(r#"{"asset":{"version":"1.1"}}"#).contains("is glTF 1.1; only glTF 2"));
+    assert!(load(r#"{"asset":{"version":"2.0"},"#).contains("is no valid glTF: EOF"));
+    let mut old = whole.clone();
+    old[4] = 1;
+    assert!(refused(&old).contains("GLB of version 1"));
+    // Animations are not played; what is wrong with them does not matter.
+    loaded(&Binary::square().glb(&square("{}", r#","animations":[{"channels":5}]"#)));
     let options = LoadOptions { max_triangles: 1, ..LoadOptions::default() };
     let error = load_gltf_bytes(&whole, &options).expect_err("a refusal");
     assert!(error.to_string().contains("max_triangles"), "{error}");

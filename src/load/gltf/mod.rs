@@ -63,6 +63,7 @@ fn model(mut document: Document, options: &LoadOptions) -> Result<Model> {
     let refuse = |reason: String| Error::file(&path, reason);
     let materials = document.materials().map_err(refuse)?;
     let placed = document.place().map_err(refuse)?;
+    name_unmoved(&mut document, &placed);
     let mut pieces = pieces(&mut document, &placed, &materials, options)?;
     let is_none = |material: &GltfMaterial| {
         material.albedo.is_none() && material.cut.is_some_and(|[opacity, cut]| opacity < cut)
@@ -90,6 +91,27 @@ fn model(mut document: Document, options: &LoadOptions) -> Result<Model> {
     let materials = materials.into_iter().map(given).zip(plans).collect();
     let warnings = document.warnings;
     Ok(Model { meshes, materials, images, camera, lights: placed.lights, choices, warnings })
+}
+
+/// Names what would move the vertices of what is drawn.
+fn name_unmoved(document: &mut Document, placed: &Placed) {
+    let root = &document.root;
+    let of_meshes = |instance: &Instance| {
+        let mesh = root.get(instance.mesh);
+        mesh.is_some_and(|mesh| mesh.primitives.iter().any(|primitive| primitive.targets.is_some()))
+    };
+    let has_skin =
+        |instance: &Instance| root.get(instance.node).is_some_and(|node| node.skin.is_some());
+    let found = [
+        ("skins", placed.instances.iter().any(has_skin)),
+        ("morph targets", placed.instances.iter().any(of_meshes)),
+        ("animations", !root.animations.is_empty()),
+    ];
+    let found: Vec<_> = found.into_iter().filter(|(_, is)| *is).map(|(what, _)| what).collect();
+    if !found.is_empty() {
+        let text = format!("{} are not supported; meshes stand still", found.join(", "));
+        document.warn(text);
+    }
 }
 
 /// The triangles of all instances, within the limits.
