@@ -42,6 +42,8 @@ pub(crate) struct Shader<'a> {
     exact: Option<ExactLight<'a>>,
     /// Where rays end on curved meshes; `None` where all reliefs are taken for flat.
     outlines: Option<Outlines<'a>>,
+    /// Whether any mesh has colours of its own.
+    has_tints: bool,
     pool: &'a Pool<ShadeScratch>,
     num_texels: [AtomicU64; 2],
 }
@@ -68,8 +70,18 @@ impl<'a> Shader<'a> {
             && traits.samples.is_some_and(|samples| samples.is_exact);
         let exact = is_exact.then(|| ExactLight { scene, occluders: prepared.occluders(scene) });
         let samples = traits.samples.map(Samples::offsets);
-        let num_texels = Default::default();
-        Self { scene, settings, prepared, traits, samples, exact, outlines, pool, num_texels }
+        Self {
+            scene,
+            settings,
+            prepared,
+            traits,
+            samples,
+            exact,
+            outlines,
+            has_tints: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty()),
+            pool,
+            num_texels: Default::default(),
+        }
     }
 
     /// What filtering took so far.
@@ -100,7 +112,8 @@ impl<'a> Shader<'a> {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
         let start = colors.len();
-        let mut hidden = HiddenLights::none(self.scene.lights.len());
+        let num_lights = if ground.is_lit { self.scene.lights.len() } else { 0 };
+        let mut hidden = HiddenLights::none(num_lights);
         // What only sends out light sends out its colour.
         let is_glowing = material.base_color == Vec3::ZERO;
         if let Some(swept) = ground.swept {
@@ -121,7 +134,7 @@ impl<'a> Shader<'a> {
                 self.shine(&ground, &hidden, block, &mut scratch, colors);
             }
         }
-        if !is_glowing {
+        if self.has_tints && !is_glowing {
             tint(block.pairs(), colors);
         }
         if ground.baked.is_some() || ground.swept.is_some() {
@@ -130,7 +143,7 @@ impl<'a> Shader<'a> {
         if let Some(glow) = ground.glow {
             self.glow(&ground, glow, block, &mut scratch, colors);
         }
-        if is_glowing {
+        if self.has_tints && is_glowing {
             tint(block.pairs(), colors);
         }
     }

@@ -243,7 +243,8 @@ mod tests {
     #[test]
     fn levels_of_opacity_hold_the_share_that_is_there() {
         // Thin blades: one column in five, of uneven opacity, on what is nearly there.
-        let blade = |x: u32, y: u32| if x.is_multiple_of(5) { 0.6 + 0.2 * (y % 3) as f32 } else { 0.45 };
+        let blade =
+            |x: u32, y: u32| if x.is_multiple_of(5) { 0.6 + 0.2 * (y % 3) as f32 } else { 0.45 };
         let image = GrayImage::from_fn(160, 64, blade);
         let texture = Texture::opacity(image, Wrap::Repeat, 0.5).expect("valid");
         for level in &texture.levels[1..] {
