@@ -1,7 +1,7 @@
 //! The lights of pairs of a block of a curved surface, for the filter that lights texels with them.
 
 use super::ground::{Ground, Swept};
-use super::skies::Skies;
+use super::prepared::PreparedScene;
 use crate::footprint::Footprints;
 use crate::light::{Curved, CurvedSun, Disc, FrameLanes, LinearSky, Slant, Ways};
 use crate::raster::{LitLanes, QuadBlock};
@@ -24,11 +24,12 @@ pub(super) struct CurvedLights {
 impl CurvedLights {
     /// Some of a scene's lights on pairs of a block.
     pub(super) fn new(
-        (scene, skies): (&Scene, &Skies),
+        (scene, prepared): (&Scene, &PreparedScene),
         (swept, relief_depth): (Swept, f32),
         block: &QuadBlock,
         pairs: Range<usize>,
     ) -> Self {
+        let (skies, occluders) = (prepared.skies(scene), prepared.occluders(scene));
         let lights = || {
             let lights = scene.lights.iter().enumerate();
             lights.filter(|(i, _)| swept.lights >> i & 1 == 1).map(|(_, light)| *light)
@@ -65,7 +66,7 @@ impl CurvedLights {
                 all.ways.extend(places.iter().map(|(at, _)| frame.ways(&position, *at, ray)));
             }
             if swept.has_sky {
-                all.skies.push(skies.of_pair(scene, &pair, &frame));
+                all.skies.push(skies.of_pair((scene, occluders), &pair, &frame));
             }
             all.frames.push(frame);
         }

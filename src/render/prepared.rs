@@ -217,7 +217,7 @@ impl PreparedScene {
     /// What of the sky gets to curved meshes.
     pub(crate) fn skies(&self, scene: &Scene) -> &Skies {
         let is_curved = |mesh: usize| self.baked.as_ref().is_some_and(|(_, b)| b.is_curved(mesh));
-        self.skies.get_or_init(|| Skies::new(scene, self.occluders(scene), is_curved))
+        self.skies.get_or_init(|| Skies::new(scene, is_curved))
     }
 
     /// Whether any piece has its light baked; if none, the groups are the materials.

@@ -232,7 +232,7 @@ impl<'a> Shader<'a> {
         let mut curved_lights;
         let curved = if let Some(swept) = ground.swept {
             curved_lights = CurvedLights::new(
-                (self.scene, self.prepared.skies(self.scene)),
+                (self.scene, self.prepared),
                 (swept, ground.prepared.surface().relief_depth()),
                 block,
                 pairs.clone(),
