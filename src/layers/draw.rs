@@ -6,7 +6,7 @@ use super::place::write_place;
 use super::values::{Band, Layers, Slot};
 use crate::geometry::Projection;
 use crate::raster::{CenterRow, Drawn, Follow};
-use crate::render::{Outlines, Renderer};
+use crate::render::Renderer;
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::simd::set_bits;
@@ -36,9 +36,9 @@ impl Renderer {
         geometry.project(scene, &settings);
         let projection = *geometry.projection();
         // What names and polygons are of is seen past outlines, too.
-        let outlines =
-            asked.has_outlines().then(|| Outlines::new(scene, prepared, &projection)).flatten();
+        let outlines = prepared.outlines(scene, asked, &projection);
         let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
+        let outlines = outlines.as_ref();
         let hits = Hits { scene, prepared, is_traced, outlines, projection: &projection };
         let mut bands = found.bands(&settings);
         let group = |triangle| hits::group(scene, triangle);

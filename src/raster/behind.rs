@@ -256,7 +256,7 @@ impl FollowScratch {
         let mut is_any_left = false;
         for samples in &mut self.samples {
             let is_left = !samples.triangle.simd_eq(u32x8::splat(NONE));
-            samples.is_asked = samples.is_asked & is_left;
+            samples.is_asked &= is_left;
             is_any_left |= samples.is_asked != u32x8::ZERO;
         }
         is_any_left
