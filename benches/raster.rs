@@ -67,7 +67,7 @@ fn draw(criterion: &mut Criterion) {
             let settings = Settings { msaa, ..Settings::default() };
             let geometry = project(&scene, &settings);
             let mut rasterizer = Rasterizer::default();
-            let mut frame: Frame = Frame::default();
+            let mut frame = Frame::filled(settings.width, settings.height, [0.0; 4]);
             group.bench_function(format!("{name}_msaa{msaa}"), |b| {
                 b.iter(|| {
                     rasterizer.draw(
@@ -75,7 +75,7 @@ fn draw(criterion: &mut Criterion) {
                         Drawn { scene: &scene, settings: &settings, group: None, follow: None },
                         &flat,
                         &|| 0.0,
-                        &mut frame,
+                        &mut frame.pixels,
                     )
                 });
             });

@@ -17,7 +17,7 @@
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
-//! [`load::load`] makes a scene of an OBJ file, its MTL files and images.
+//! [`load::load`] makes a scene of an OBJ file, its MTL files and images, or of a glTF file.
 //!
 //! # A filter alone
 //!
@@ -125,7 +125,7 @@
 //! | [`frame`] | pixels and image files |
 //! | [`scene`] | what is drawn: meshes, materials, camera, lights; the built-in scene |
 //! | `decode` | bytes of image files to samples |
-//! | [`load`] | OBJ and MTL files to a scene, within limits |
+//! | [`load`] | OBJ, MTL and glTF files to a scene, within limits |
 //! | `geometry` | model space to screen triangles: projection, culling, clipping, fixed point |
 //! | `raster` | screen triangles to quads: tiles, edge functions, depth, helper lanes |
 //! | `relief` | height field, displacement, march to the hit; what a mip level loses |
@@ -188,7 +188,10 @@ pub use footprint::FootprintRule;
 pub use frame::Frame;
 pub use layers::{Layer, Layers};
 pub use render::{DrawnPixel, Renderer, Stats, render};
-pub use scene::{Camera, Environment, Intrinsics, Light, Material, Mesh, PoseAxes, Scene, Sky};
+pub use scene::{
+    Camera, CutOut, Environment, Intrinsics, Light, Material, MaterialMaps, Mesh, PoseAxes, Scene,
+    Sky,
+};
 pub use settings::{
     Derivatives, Ewa, Filter, Formulas, Horizon, Lighting, OptionsMut, RECONSTRUCTION, Rays,
     Region, Settings, Tone, Trilinear, Visibility, Visible,

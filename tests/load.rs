@@ -118,7 +118,7 @@ fn made_normals_know_no_seams_and_edges_by_the_crease_angle() {
                vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvt 5 0\nvt 6 0\n";
     let mut files = Files::new(&format!("{obj}{faces}"), "newmtl a\n\nnewmtl b\n");
     for (crease_angle, at_ridge) in [(60.0, [-1.0, 1.0]), (90.0, [0.0, 0.0])] {
-        files.options.crease_angle = crease_angle;
+        files.options.crease_angle = Some(crease_angle);
         let meshes = files.load().scene.meshes;
         for (mesh, x) in meshes.iter().zip(at_ridge) {
             let ridge = mesh.positions.iter().zip(&mesh.normals).filter(|(p, _)| p.y == 1.0);
@@ -129,7 +129,7 @@ fn made_normals_know_no_seams_and_edges_by_the_crease_angle() {
         }
     }
     for crease_angle in [-1.0, 180.5, f32::NAN] {
-        files.options.crease_angle = crease_angle;
+        files.options.crease_angle = Some(crease_angle);
         assert!(
             files.try_load().unwrap_err().to_string().contains("crease_angle"),
             "{crease_angle}"
@@ -287,6 +287,32 @@ fn norm_and_map_kn_are_normal_maps_with_green_up_or_down() {
             "nothing else is in the material"
         );
     }
+}
+
+#[test]
+fn textures_of_metal_roughness_and_emission_are_read_for_light() {
+    let lines = "Pm 0\nPr 0.3\nmap_Pm m.png\nmap_Pr -imfchan g r.png\nmap_Ke e.png";
+    let mut files = Files::quad(lines);
+    files.image("m.png", gray(&[0, 255]));
+    files.image("r.png", one(9, 51, 200));
+    files.image("e.png", one(255, 0, 255));
+    files.image("o.png", gray(&[255; 3]));
+    assert!(files.load().scene.materials[0].surface.is_none(), "nothing is drawn without light");
+    files.options.keep_normals = true;
+    files.options.all.occlusion_map = Some(files.path("o.png"));
+    let material = files.load().scene.materials.remove(0);
+    assert_eq!(
+        (material.metallic, material.roughness, material.emissive),
+        (1.0, 1.0, Vec3::ONE),
+        "textures in place of numbers"
+    );
+    let finish = material.finish(|map| map.at([0.75, 0.5]));
+    assert_eq!((finish.metallic, finish.occlusion), (1.0, 1.0));
+    assert!((finish.roughness - 0.2).abs() < 1e-4 && finish.emissive == Vec3::new(1.0, 0.0, 1.0));
+    let surface = material.surface.expect("a surface");
+    assert_eq!(surface.base().size(), [3, 2], "as many texels as its textures have");
+    files.options.all.emissive = Some(Vec3::splat(3.0));
+    assert_eq!(files.load().scene.materials[0].emissive, Vec3::splat(3.0));
 }
 
 #[test]

@@ -183,6 +183,7 @@ fn maps() -> impl Strategy<Value = SurfaceMaps> {
                 wrap,
                 relief_depth,
                 keep_normals,
+                least_size: [1; 2],
             }
         },
     )

@@ -80,6 +80,7 @@ replays! {
     footprint_ellipse MANY;
     horizon MANY;
     layers MANY;
+    load_gltf MANY;
     outlines MANY;
     load_image MANY;
     load_mtl MANY;

@@ -5,7 +5,7 @@
 //! already. Heights and normals are linear. The first row of a file is the top of the picture; ours
 //! is the bottom, so rows are turned over.
 
-use crate::texture::{ColorImage, HeightImage, NormalImage, linear_from_srgb};
+use crate::texture::{ColorImage, GrayImage, NormalImage, linear_from_srgb};
 use glam::Vec3;
 use image::DynamicImage;
 use rayon::prelude::*;
@@ -156,8 +156,8 @@ impl Samples {
         texels.into_iter().map(Vec3::from).collect()
     }
 
-    /// Heights `base + gain * h`, kept within 0 to 1, of one channel.
-    pub(crate) fn height(&self, channel: Option<Channel>, [base, gain]: [f32; 2]) -> HeightImage {
+    /// Numbers `base + gain * c`, kept within 0 to 1, of one channel as it is stored.
+    pub(crate) fn gray(&self, channel: Option<Channel>, [base, gain]: [f32; 2]) -> GrayImage {
         let value = |c: &[f32]| match (channel, c) {
             (Some(Channel::Matte), [.., alpha]) if c.len().is_multiple_of(2) => *alpha,
             (Some(Channel::Matte), _) => 1.0,
@@ -170,7 +170,7 @@ impl Samples {
         };
         let texels =
             self.map(|c| ((base + gain * value(c)).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16);
-        HeightImage { width: self.width as u32, height: self.height as u32, texels }
+        GrayImage { width: self.width as u32, height: self.height as u32, texels }
     }
 
     /// Normals; `strength` multiplies x and y, and `green` (1 or -1) y.

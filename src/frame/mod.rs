@@ -42,6 +42,17 @@ impl<P: Pixel> Frame<P> {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
 
+    /// Makes the frame so many pixels wide and high, for whoever overwrites them all: memory of the
+    /// right size is kept as it is.
+    pub(crate) fn fit(&mut self, [width, height]: [u32; 2]) {
+        (self.width, self.height) = (width, height);
+        let num_pixels = width as usize * height as usize;
+        if self.pixels.len() != num_pixels {
+            // `vec![0; n]` is zeroed lazily by the system, on the thread that first touches a page.
+            self.pixels = vec![P::default(); num_pixels];
+        }
+    }
+
     /// Keeps a part of the frame, in place.
     ///
     /// # Panics

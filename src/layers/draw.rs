@@ -3,10 +3,10 @@
 use super::hits::{self, Hits};
 use super::layer::Layer;
 use super::place::write_place;
-use super::values::{Band, Layers, Slot};
+use super::values::{Band, Layers, ValuesMut};
 use crate::geometry::Projection;
 use crate::raster::{CenterRow, Drawn, Follow};
-use crate::render::Renderer;
+use crate::render::{Passages, Renderer};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::simd::set_bits;
@@ -15,17 +15,28 @@ impl Renderer {
     /// What the centres of a frame's pixels see, or those of its [region](Settings::region), on the
     /// threads of the current rayon pool: see [`layers`](crate::layers).
     pub fn render_layers(&mut self, layers: &[Layer]) -> Layers {
+        let drawn = self.settings().drawn();
+        let mut found = Layers::unwritten(layers, drawn.width, drawn.height);
+        self.render_layers_to(found.all_mut());
+        found
+    }
+
+    /// [`Self::render_layers`] into memory of the caller's, each layer row by row from the top. A
+    /// layer may be there twice.
+    ///
+    /// # Panics
+    /// If the numbers of a layer are not [of its kind](Layer::is_id), or not as many as
+    /// [`Settings::drawn`] and [`Layer::num_channels`] say.
+    pub fn render_layers_to(&mut self, layers: Vec<(Layer, ValuesMut)>) {
         let (scene, asked, prepared, geometry, rasterizer) = self.parts();
-        let drawn = asked.drawn();
-        let mut found = Layers::empty(layers, drawn.width, drawn.height);
         let has_relief = |material: usize| {
             prepared.of_material(material, true).is_some_and(|surface| surface.field().is_some())
         };
         let is_traced = asked.parallax
-            && found.all.iter().any(|(layer, _)| layer.is_of_hit())
+            && layers.iter().any(|(layer, _)| layer.is_of_hit())
             && (0..scene.materials.len()).any(has_relief);
-        let has_quads = found.all.iter().any(|(layer, _)| layer.asks_for_quads(is_traced));
-        let has_normals = found.all.iter().any(|(layer, _)| layer.is_normal());
+        let has_quads = layers.iter().any(|(layer, _)| layer.asks_for_quads(is_traced));
+        let has_normals = layers.iter().any(|(layer, _)| layer.is_normal());
         let settings = Settings {
             msaa: 1,
             // What is lit has normals.
@@ -37,10 +48,11 @@ impl Renderer {
         let projection = *geometry.projection();
         // What names and polygons are of is seen past outlines, too.
         let outlines = prepared.outlines(scene, asked, &projection);
-        let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
         let outlines = outlines.as_ref();
+        let passages = Passages::new(scene, &projection, outlines);
+        let follow = passages.as_ref().map(|passages| passages as &dyn Follow);
         let hits = Hits { scene, prepared, is_traced, outlines, projection: &projection };
-        let mut bands = found.bands(&settings);
+        let mut bands = Band::all(layers, &settings);
         let group = |triangle| hits::group(scene, triangle);
         let drawn = Drawn { scene, settings: &settings, group: Some(&group), follow };
         rasterizer.see_centers(geometry, (drawn, has_quads), &mut bands, &|tile, band| {
@@ -54,8 +66,6 @@ impl Renderer {
             }
             hits.write(tile, band);
         });
-        drop(bands);
-        found
     }
 }
 
@@ -74,7 +84,7 @@ fn write_row(
         let Some(at) = band.index(pixel) else { continue };
         for (layer, slot) in &mut band.slots {
             match slot {
-                Slot::Ids(ids) => {
+                ValuesMut::Ids(ids) => {
                     let [mesh, triangle] = names[lane];
                     ids[at] = match layer {
                         Layer::Object => mesh,
@@ -82,7 +92,7 @@ fn write_row(
                         _ => scene.meshes[mesh as usize].material as u32,
                     };
                 }
-                Slot::Floats(values) => {
+                ValuesMut::Floats(values) => {
                     let is_polygon = matches!(layer, Layer::PolygonDepth | Layer::PolygonPosition);
                     if is_polygon || layer.is_place() {
                         write_place(

@@ -2,7 +2,7 @@
 
 use super::layer::Layer;
 use super::place::write_place;
-use super::values::{Band, Slot};
+use super::values::{Band, ValuesMut};
 use crate::geometry::Projection;
 use crate::light::unit_axes;
 use crate::raster::{CenterTile, LitLanes, QuadBlock, QuadPair};
@@ -105,7 +105,7 @@ impl Hits<'_> {
                 lane,
             };
             for (layer, slot) in &mut band.slots {
-                let Slot::Floats(values) = slot else { continue };
+                let ValuesMut::Floats(values) = slot else { continue };
                 let values = &mut values[at * layer.num_channels()..];
                 // Without relief the polygon's place stands already.
                 if layer.is_place() && has_relief {

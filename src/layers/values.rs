@@ -46,52 +46,30 @@ impl Layers {
         self.all.iter().find_map(|(kept, values)| (*kept == layer).then_some(values))
     }
 
-    /// Layers in which nothing is seen.
-    pub(super) fn empty(layers: &[Layer], width: u32, height: u32) -> Self {
+    /// Room for layers, which are yet to be written.
+    pub(super) fn unwritten(layers: &[Layer], width: u32, height: u32) -> Self {
         let num_pixels = width as usize * height as usize;
         let mut all: Vec<(Layer, Values)> = Vec::new();
         for &layer in layers {
             if all.iter().any(|(kept, _)| *kept == layer) {
                 continue;
             }
-            let values = if layer.is_id() {
-                Values::Ids(vec![u32::MAX; num_pixels])
-            } else {
-                Values::Floats(vec![layer.background(); num_pixels * layer.num_channels()])
-            };
+            let num = num_pixels * layer.num_channels();
+            let is_id = layer.is_id();
+            let values =
+                if is_id { Values::Ids(vec![0; num]) } else { Values::Floats(vec![0.0; num]) };
             all.push((layer, values));
         }
         Self { width, height, all }
     }
 
-    /// The rows of each row of tiles.
-    pub(super) fn bands(&mut self, settings: &Settings) -> Vec<Band<'_>> {
-        let (grid, region) = (TileGrid::new(settings), settings.drawn());
-        let row_of = |band: i32| {
-            // The tiles may begin before the region, and end after it.
-            let row = grid.area.min[1] + band * grid.tile_size;
-            row.clamp(region.y as i32, (region.y + region.height) as i32)
-        };
-        let rows = |band: i32| (row_of(band + 1) - row_of(band)) as usize;
-        let mut bands: Vec<Band> = (0..grid.num_tiles[1])
-            .map(|band| Band {
-                region: Region { y: row_of(band) as u32, height: rows(band) as u32, ..region },
-                slots: Vec::with_capacity(self.all.len()),
-            })
-            .collect();
-        for (layer, values) in &mut self.all {
-            let row = region.width as usize * layer.num_channels();
-            let mut left = match values {
-                Values::Floats(values) => Slot::Floats(values),
-                Values::Ids(values) => Slot::Ids(values),
-            };
-            for band in &mut bands {
-                let (slot, rest) = left.split(band.region.height as usize * row);
-                band.slots.push((*layer, slot));
-                left = rest;
-            }
-        }
-        bands
+    /// The numbers of each layer, to be written.
+    pub(super) fn all_mut(&mut self) -> Vec<(Layer, ValuesMut<'_>)> {
+        let all = self.all.iter_mut().map(|(layer, values)| match values {
+            Values::Floats(values) => (*layer, ValuesMut::Floats(values)),
+            Values::Ids(values) => (*layer, ValuesMut::Ids(values)),
+        });
+        all.collect()
     }
 }
 
@@ -99,16 +77,35 @@ impl Layers {
 pub(super) struct Band<'a> {
     /// The pixels of the frame that it holds.
     pub(super) region: Region,
-    pub(super) slots: Vec<(Layer, Slot<'a>)>,
+    pub(super) slots: Vec<(Layer, ValuesMut<'a>)>,
 }
 
-/// A run of rows of a layer.
-pub(super) enum Slot<'a> {
+/// The numbers of a layer, or of a run of its rows, in memory of the caller's: as [`Values`].
+#[derive(Debug)]
+pub enum ValuesMut<'a> {
+    /// Measures.
     Floats(&'a mut [f32]),
+    /// Indices.
     Ids(&'a mut [u32]),
 }
 
-impl<'a> Slot<'a> {
+impl ValuesMut<'_> {
+    /// How many numbers there are.
+    fn len(&self) -> usize {
+        match self {
+            Self::Floats(values) => values.len(),
+            Self::Ids(values) => values.len(),
+        }
+    }
+
+    /// Writes what a layer says of a pixel that sees nothing everywhere.
+    fn clear(&mut self, layer: Layer) {
+        match self {
+            Self::Floats(values) => values.fill(layer.background()),
+            Self::Ids(values) => values.fill(u32::MAX),
+        }
+    }
+
     fn split(self, at: usize) -> (Self, Self) {
         match self {
             Self::Floats(values) => {
@@ -123,7 +120,40 @@ impl<'a> Slot<'a> {
     }
 }
 
-impl Band<'_> {
+impl<'a> Band<'a> {
+    /// The rows of each row of tiles, in which nothing is seen yet.
+    ///
+    /// # Panics
+    /// If the numbers of a layer are not of its kind, or not as many as it has in the pixels drawn.
+    pub(super) fn all(layers: Vec<(Layer, ValuesMut<'a>)>, settings: &Settings) -> Vec<Self> {
+        let (grid, region) = (TileGrid::new(settings), settings.drawn());
+        let row_of = |band: i32| {
+            // The tiles may begin before the region, and end after it.
+            let row = grid.area.min[1] + band * grid.tile_size;
+            row.clamp(region.y as i32, (region.y + region.height) as i32)
+        };
+        let rows = |band: i32| (row_of(band + 1) - row_of(band)) as usize;
+        let mut bands: Vec<Self> = (0..grid.num_tiles[1])
+            .map(|band| Band {
+                region: Region { y: row_of(band) as u32, height: rows(band) as u32, ..region },
+                slots: Vec::with_capacity(layers.len()),
+            })
+            .collect();
+        for (layer, mut values) in layers {
+            let row = region.width as usize * layer.num_channels();
+            let is_right = values.len() == row * region.height as usize
+                && matches!(values, ValuesMut::Ids(_)) == layer.is_id();
+            assert!(is_right, "numbers of {} must be those of its pixels", layer.name());
+            values.clear(layer);
+            for band in &mut bands {
+                let (slot, rest) = values.split(band.region.height as usize * row);
+                band.slots.push((layer, slot));
+                values = rest;
+            }
+        }
+        bands
+    }
+
     /// The number of a pixel of the frame in the band, if it is there.
     #[inline(always)]
     pub(super) fn index(&self, [x, y]: [i32; 2]) -> Option<usize> {

@@ -79,16 +79,17 @@ impl TextureFrame {
         Some(Beam { to_light: local, slope: if is_finite { slope } else { [0.0; 2] }, intensity })
     }
 
-    /// The beams of suns and a sky on a surface with this frame; `None` where a light comes from
-    /// another direction at each place.
-    pub fn beams(&self, lights: &[Light], sky: &Sky) -> Option<Vec<Beam>> {
+    /// The beams of suns and a sky on a surface with this frame; points come from another direction at
+    /// each place, and have none.
+    pub fn beams(&self, lights: &[Light], sky: &Sky) -> Vec<Beam> {
         let mut beams = Vec::new();
         for light in lights {
-            let Light::Sun { to_light, intensity, angular_size } = *light else { return None };
-            beams.extend(self.sun(to_light.normalize_or_zero(), intensity, angular_size));
+            if let Light::Sun { to_light, intensity, angular_size } = *light {
+                beams.extend(self.sun(to_light.normalize_or_zero(), intensity, angular_size));
+            }
         }
         beams.extend(self.sky(sky));
-        Some(beams)
+        beams
     }
 
     /// Beams from points spread evenly over a sun's disc.
@@ -119,28 +120,42 @@ impl TextureFrame {
     }
 }
 
-/// The surface lit by beams; it needs no normals any more.
-pub fn baked(surface: &Surface, beams: &[Beam]) -> Surface {
-    let [along_u, along_v] = summed(surface, beams, true);
+/// The surface lit by beams of suns and of the sky; it needs no normals any more. `shares` gives the
+/// part of each of the two that a texel shows, where it is not all.
+pub fn baked(
+    surface: &Surface,
+    [suns, sky]: [&[Beam]; 2],
+    shares: Option<&(dyn Fn(usize, usize) -> [f32; 2] + Sync)>,
+) -> Surface {
+    let Some(shares) = shares else {
+        let [along_u, along_v] = summed(surface, &[suns, sky].concat(), true);
+        return surface.with_colors(false, |x, y, albedo| {
+            std::array::from_fn(|c| albedo[c] * (along_u.at(x, y)[c] + along_v.at(y, x)[c]))
+        });
+    };
+    let sums = [suns, sky].map(|beams| summed(surface, beams, true));
     surface.with_colors(false, |x, y, albedo| {
-        std::array::from_fn(|c| albedo[c] * (along_u.at(x, y)[c] + along_v.at(y, x)[c]))
+        let of =
+            |[along_u, along_v]: &[Sums; 2], c: usize| along_u.at(x, y)[c] + along_v.at(y, x)[c];
+        let [of_suns, of_sky] = shares(x, y);
+        std::array::from_fn(|c| albedo[c] * (of(&sums[0], c) * of_suns + of(&sums[1], c) * of_sky))
     })
 }
 
-/// The surface with what it reflects of light that comes straight for its colours, by the albedo,
-/// times the part of each texel that beams reach. Normals stay: what of that gets to the eye
+/// The surface with what it reflects of light that comes straight for its colours, by the column, row
+/// and albedo of a texel, times the part of each texel that beams reach. Normals stay: what of that gets to the eye
 /// depends on where that is.
 pub fn glossy(
     surface: &Surface,
     beams: &[Beam],
-    straight: impl Fn([f32; 3]) -> Vec3 + Sync,
+    straight: impl Fn(usize, usize, [f32; 3]) -> Vec3 + Sync,
 ) -> Surface {
     let all = beams.iter().fold(0.0, |sum, beam| sum + beam.intensity.element_sum());
     let share = |beam: &Beam| Vec3::splat(beam.intensity.element_sum() / all);
     let beams: Vec<_> = beams.iter().map(|b| Beam { intensity: share(b), ..*b }).collect();
     let [along_u, along_v] = summed(surface, &beams, false);
     surface.with_colors(true, |x, y, albedo| {
-        (straight(albedo) * (along_u.at(x, y)[0] + along_v.at(y, x)[0])).to_array()
+        (straight(x, y, albedo) * (along_u.at(x, y)[0] + along_v.at(y, x)[0])).to_array()
     })
 }
 

@@ -2,17 +2,19 @@
 
 use super::reflection::{self, Fresnel, LEAST_COSINE, Reflectance};
 use super::surface_point::SurfacePoint;
-use crate::scene::{Light, Material, Sky};
+use crate::scene::{Finish, Light, Sky};
 use glam::Vec3;
 
 /// The lights as one place of a surface sees them, in the frame of its texture: x along u, y along
 /// v, z off the surface.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct LocalLights {
     /// What the sky lights a white surface to that lies in the polygon.
     pub ambient: Vec3,
-    /// Unit direction towards each light, and its intensity here.
-    pub lights: Vec<(Vec3, Vec3)>,
+    /// How much of the sky gets here, 0 to 1: part of `ambient` already.
+    pub occlusion: f32,
+    /// In the order of the scene.
+    pub lights: Vec<LocalLight>,
     /// Unit direction to the eye.
     pub to_eye: Vec3,
     /// The frame's axes in the world.
@@ -21,11 +23,22 @@ pub struct LocalLights {
     pub gloss: Option<f32>,
 }
 
+/// A light as one place of a surface sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalLight {
+    /// Unit direction towards it.
+    pub to_light: Vec3,
+    /// Its intensity here.
+    pub intensity: Vec3,
+    /// Whether it is a point.
+    pub is_point: bool,
+}
+
 /// What light does with a surface: what the diffuse layer shows, and what comes on top of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflected {
-    /// What the diffuse colour is multiplied with: the part of light that is not reflected before.
-    pub diffuse_share: f32,
+    /// The part of light that is not reflected before it gets to the diffuse layer.
+    pub passed: f32,
     /// What is reflected of lights and sky, and what the surface sends out by itself.
     pub added: Vec3,
 }
@@ -45,40 +58,51 @@ impl LocalLights {
                     (way.normalize_or_zero(), intensity / way.length_squared().max(1e-12))
                 }
             };
-            (local(to_light), intensity)
+            let is_point = matches!(light, Light::Point { .. });
+            LocalLight { to_light: local(to_light), intensity, is_point }
         });
         let to_eye = local((eye - point.position).normalize_or_zero());
         let (ambient, lights) = (sky.irradiance(normal), lights.collect());
-        Self { ambient, lights, to_eye, axes, gloss: None }
+        Self { ambient, occlusion: 1.0, lights, to_eye, axes, gloss: None }
+    }
+
+    /// Leaves so much of the sky, 0 to 1.
+    pub fn occlude(&mut self, share: f32) {
+        self.ambient *= share;
+        self.occlusion *= share;
     }
 
     /// What an albedo of 1 is multiplied with under a normal.
     pub fn diffuse(&self, normal: Vec3, sky: &Sky) -> Vec3 {
-        let ambient =
-            if sky.is_uniform() { self.ambient } else { sky.irradiance(self.in_world(normal)) };
-        self.lights.iter().fold(ambient, |sum, (to_light, intensity)| {
-            sum + *intensity * normal.dot(*to_light).max(0.0)
-        })
+        let ambient = if sky.is_uniform() {
+            self.ambient
+        } else {
+            sky.irradiance(self.in_world(normal)) * self.occlusion
+        };
+        self.lights
+            .iter()
+            .fold(ambient, |sum, light| sum + light.intensity * normal.dot(light.to_light).max(0.0))
     }
 
-    /// The same lights, of each of which highlights hold what a surface reflects that reflects
+    /// The same suns, of each of which highlights hold what a surface reflects that reflects
     /// `straight` of light that comes straight, as a share of that.
-    pub fn glossy(&self, material: &Material, fresnel: &Fresnel) -> Self {
-        let alpha = reflection::alpha(material.roughness);
-        let lights = self.lights.iter().map(|(to_light, intensity)| {
-            let half = (*to_light + self.to_eye).normalize_or_zero();
+    pub fn glossy(&self, finish: &Finish, fresnel: &Fresnel) -> Self {
+        let alpha = reflection::alpha(finish.roughness);
+        let lights = self.lights.iter().filter(|light| !light.is_point).map(|light| {
+            let half = (light.to_light + self.to_eye).normalize_or_zero();
             let straight = fresnel.straight.max(Vec3::splat(1e-6));
-            (*to_light, *intensity * fresnel.at(half.dot(self.to_eye)) / straight)
+            let share = fresnel.at(half.dot(self.to_eye)) / straight;
+            LocalLight { intensity: light.intensity * share, ..*light }
         });
         Self { lights: lights.collect(), gloss: Some(alpha * alpha), ..*self }
     }
 
-    /// What a material of base colour `base` does with the light under a mean normal; of highlights
-    /// what is given, else those of the mean normal.
+    /// What a material of base colour `base` does with the light under a mean normal; of suns'
+    /// highlights what is given, else those of the mean normal.
     pub fn reflected(
         &self,
         mean_normal: Vec3,
-        (material, base): (&Material, Vec3),
+        (finish, base): (&Finish, Vec3),
         sky: &Sky,
         reflectance: &Reflectance,
         highlights: Option<Vec3>,
@@ -87,23 +111,23 @@ impl LocalLights {
         // long.
         let length = mean_normal.length().clamp(1e-3, 1.0);
         let normal = mean_normal / length;
-        let alpha = reflection::alpha(material.roughness);
+        let alpha = reflection::alpha(finish.roughness);
         let alpha_squared = (alpha * alpha + 2.0 * (1.0 - length) / length).min(1.0);
         let n_v = normal.dot(self.to_eye).max(LEAST_COSINE);
-        let fresnel = Fresnel::new(material, base);
+        let fresnel = Fresnel::new(finish, base);
         let of_sky = reflectance.at(n_v, alpha_squared.sqrt());
-        let mut added = material.emissive;
+        let mut added = finish.emissive;
         added += fresnel.of_sky(of_sky) * self.mirrored(normal, alpha_squared, sky);
         added += highlights.unwrap_or(Vec3::ZERO);
-        for (to_light, intensity) in self.lights.iter().filter(|_| highlights.is_none()) {
-            let half = (*to_light + self.to_eye).normalize_or_zero();
+        for light in self.lights.iter().filter(|light| light.is_point || highlights.is_none()) {
+            let half = (light.to_light + self.to_eye).normalize_or_zero();
             let share = fresnel.at(half.dot(self.to_eye));
-            let n_l = normal.dot(*to_light);
-            added +=
-                *intensity * share * reflection::lobe(alpha_squared, n_v, n_l, normal.dot(half));
+            let n_l = normal.dot(light.to_light);
+            let lobe = reflection::lobe(alpha_squared, n_v, n_l, normal.dot(half));
+            added += light.intensity * share * lobe;
         }
-        let left = 1.0 - Fresnel::of_dielectric(material).of_sky(of_sky).x;
-        Reflected { diffuse_share: left * (1.0 - material.metallic), added }
+        let passed = 1.0 - Fresnel::of_dielectric(finish).of_sky(of_sky).x;
+        Reflected { passed, added }
     }
 
     /// The sky that a surface reflects, a blend of what a mirror shows and, the rougher, of all
@@ -115,7 +139,7 @@ impl LocalLights {
         let direction = normal * (2.0 * normal.dot(self.to_eye)) - self.to_eye;
         let direction = self.in_world(direction);
         let (sharp, wide) = (sky.radiance(direction), sky.irradiance(direction));
-        sharp + (wide - sharp) * alpha_squared.sqrt()
+        (sharp + (wide - sharp) * alpha_squared.sqrt()) * self.occlusion
     }
 
     /// A direction of the frame in the world.

@@ -11,7 +11,7 @@
 //! What a surface reflects of a sky of 1 is `F0 x + F90 y`, and both depend on `n.v` and `a` only
 //! ([`Reflectance`]). What is reflected does not get to the diffuse layer below.
 
-use crate::scene::Material;
+use crate::scene::Finish;
 use crate::scene::angle::cos_sin;
 use glam::{DVec3, Vec3};
 
@@ -40,9 +40,9 @@ pub struct Fresnel {
 
 impl Fresnel {
     /// Of a material whose base colour is `base` at the place.
-    pub fn new(material: &Material, base: Vec3) -> Self {
-        let Self { straight, grazing } = Self::of_dielectric(material);
-        let metallic = material.metallic;
+    pub fn new(finish: &Finish, base: Vec3) -> Self {
+        let Self { straight, grazing } = Self::of_dielectric(finish);
+        let metallic = finish.metallic;
         Self {
             straight: straight * (1.0 - metallic) + base * metallic,
             grazing: grazing * (1.0 - metallic) + metallic,
@@ -50,8 +50,8 @@ impl Fresnel {
     }
 
     /// Of what a material has of a dielectric.
-    pub fn of_dielectric(material: &Material) -> Self {
-        let specular = material.specular;
+    pub fn of_dielectric(finish: &Finish) -> Self {
+        let specular = finish.specular;
         Self { straight: Vec3::splat(DIELECTRIC * specular), grazing: specular }
     }
 

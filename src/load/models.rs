@@ -30,7 +30,7 @@ fn mesh(model: tobj::Model, num_materials: usize) -> Mesh {
     }
     let triangles = mesh.indices.as_chunks().0.to_vec();
     let material = mesh.material_id.filter(|&i| i < num_materials).unwrap_or(num_materials);
-    Mesh { name, material, positions, tex_coords, normals, triangles, tangents: Vec::new() }
+    Mesh { name, material, positions, tex_coords, normals, triangles, ..Mesh::default() }
 }
 
 /// Whether a position, coordinate or normal is not finite or too large.
@@ -87,7 +87,9 @@ fn placement(material: &MtlMaterial) -> (Vec2, Vec2) {
 }
 
 fn textures(material: &MtlMaterial) -> impl Iterator<Item = &TextureRef> {
-    [&material.albedo, &material.height, &material.bump, &material.normal].into_iter().flatten()
+    let MtlMaterial { albedo, height, bump, normal, .. } = material;
+    let MtlMaterial { metallic_map, roughness_map, emissive_map, .. } = material;
+    [albedo, height, bump, normal, metallic_map, roughness_map, emissive_map].into_iter().flatten()
 }
 
 /// Warns of maps whose own scale and shift are not those that are used.

@@ -37,37 +37,58 @@ pub struct MaterialOptions {
     pub height: Option<PathBuf>,
     /// Normal map for materials with texture coordinates.
     pub normal: Option<PathBuf>,
+    /// Texture of metal for materials with texture coordinates; `None`: `map_Pm`.
+    pub metallic_map: Option<PathBuf>,
+    /// Texture of roughness for materials with texture coordinates; `None`: `map_Pr`.
+    pub roughness_map: Option<PathBuf>,
+    /// Texture of occlusion for materials with texture coordinates.
+    pub occlusion_map: Option<PathBuf>,
+    /// Texture of emission for materials with texture coordinates; `None`: `map_Ke`.
+    pub emissive_map: Option<PathBuf>,
     /// Which end of the height map is high; `None`: white.
     pub height_sense: Option<HeightSense>,
-    /// Relief depth in texture repeats, 0 to 1; `None`: `-bm` of the height map in the MTL, else
-    /// 0.05.
+    /// Relief depth in texture repeats, 0 to 1; `None`: `-bm` of the height map in the MTL,
+    /// `basrelief_depth` in the extras of a glTF material, else 0.05.
     pub relief_depth: Option<f32>,
     /// Where the normal map's green points; `None`: up.
     pub normal_y: Option<NormalY>,
-    /// What lies beyond a texture's edges; `None`: clamp where the MTL says `-clamp on`, else
-    /// repeat.
+    /// What lies beyond a texture's edges; `None`: clamp where the MTL says `-clamp on`, what a glTF
+    /// sampler says, else repeat.
     pub wrap: Option<Wrap>,
     /// What multiplies the colour map, linear RGB, 0 to 1e6; `None`: `Kd`, else 1.
     pub base_color: Option<Vec3>,
-    /// 0 for a dielectric, 1 for a metal; `None`: `Pm`, else 0.
+    /// 0 for a dielectric, 1 for a metal; `None`: 1 where there is a texture of it, else `Pm`, else
+    /// 0.
     pub metallic: Option<f32>,
     /// How strongly a dielectric reflects, 0 to 1; `None`: 1 where the MTL has a `Ks` that is not
-    /// black, `Pr` or `Pm`, or `roughness` is given here, else 0.
+    /// black, `Pr`, `Pm` or a texture of them, or `roughness` is given here, else 0.
     pub specular: Option<f32>,
-    /// How rough it is, 0 to 1; `None`: `Pr`, else that of the exponent `Ns` where `Ks` is not
-    /// black, else 1.
+    /// How rough it is, 0 to 1; `None`: 1 where there is a texture of it, else `Pr`, else that of the
+    /// exponent `Ns` where `Ks` is not black, else 1.
     pub roughness: Option<f32>,
-    /// Light that it sends out, linear RGB, 0 to 1e6; `None`: `Ke`, else 0.
+    /// Light that it sends out, linear RGB, 0 to 1e6; `None`: `Ke`, else 0; 1 in place of 0 where
+    /// there is a texture of it.
     pub emissive: Option<Vec3>,
 }
 
 impl MaterialOptions {
+    /// The files that can be given.
+    pub fn files_mut(&mut self) -> [&mut Option<PathBuf>; 7] {
+        let Self { albedo, height, normal, metallic_map, roughness_map, .. } = self;
+        let (occlusion, emissive) = (&mut self.occlusion_map, &mut self.emissive_map);
+        [albedo, height, normal, metallic_map, roughness_map, occlusion, emissive]
+    }
+
     /// These options, and those of `other` where these say nothing.
     pub fn or(self, other: &Self) -> Self {
         Self {
             albedo: self.albedo.or_else(|| other.albedo.clone()),
             height: self.height.or_else(|| other.height.clone()),
             normal: self.normal.or_else(|| other.normal.clone()),
+            metallic_map: self.metallic_map.or_else(|| other.metallic_map.clone()),
+            roughness_map: self.roughness_map.or_else(|| other.roughness_map.clone()),
+            occlusion_map: self.occlusion_map.or_else(|| other.occlusion_map.clone()),
+            emissive_map: self.emissive_map.or_else(|| other.emissive_map.clone()),
             height_sense: self.height_sense.or(other.height_sense),
             relief_depth: self.relief_depth.or(other.relief_depth),
             normal_y: self.normal_y.or(other.normal_y),
@@ -89,15 +110,17 @@ pub struct LoadOptions {
     /// What is said of single materials, by their names, before what is said of all. Default:
     /// nothing.
     pub materials: BTreeMap<String, MaterialOptions>,
-    /// Whether surfaces keep normals, which only lighting needs. Default: `false`.
+    /// Whether surfaces keep normals, and materials their textures of metal, roughness, occlusion
+    /// and emission, which only lighting needs. Default: `false`.
     pub keep_normals: bool,
     /// Width over height of the picture that the camera frames the scene for, above 0; wider
     /// pictures show all of it, too. Default: 1.
     pub aspect: f32,
     /// Where normals are made, faces that meet at a sharper angle than this keep their own:
-    /// degrees, 0 (every edge is sharp) to 180 (none is). Default: 60.
-    pub crease_angle: f32,
-    /// Whether files that lie outside the OBJ's folder, also by a link, may be read when a material
+    /// degrees, 0 (every edge is sharp) to 180 (none is). Default: `None`, 60 of an OBJ file, and 0
+    /// of glTF, which demands it.
+    pub crease_angle: Option<f32>,
+    /// Whether files that lie outside the model's folder, also by a link, may be read when the model
     /// names them. Files that the caller names may lie anywhere. Default: `false`.
     pub allow_outside: bool,
     /// Most texels a side of an image, 1 to 32768. Default: 32768.
@@ -106,7 +129,8 @@ pub struct LoadOptions {
     /// by an estimate from the heads of the files: about 60 bytes a texel. Default: 1024, room for
     /// one material of 4096 x 4096 texels.
     pub max_image_mib: u32,
-    /// Most triangles, and most `v`, `vt` and `vn` lines each. Default: 50 million.
+    /// Most triangles, and most `v`, `vt` and `vn` lines each; of glTF, most triangles and vertices
+    /// of all that its nodes place. Default: 50 million.
     pub max_triangles: u64,
     /// Most texture files. Default: 1024.
     pub max_textures: u32,
@@ -119,7 +143,7 @@ impl Default for LoadOptions {
             materials: BTreeMap::new(),
             keep_normals: false,
             aspect: 1.0,
-            crease_angle: 60.0,
+            crease_angle: None,
             allow_outside: false,
             max_image_side: 32768,
             max_image_mib: 1024,
@@ -138,7 +162,7 @@ impl LoadOptions {
         }) {
             return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
         }
-        if !(0.0..=180.0).contains(&self.crease_angle) {
+        if self.crease_angle.is_some_and(|angle| !(0.0..=180.0).contains(&angle)) {
             return Err(Error::setting("crease_angle", "must be within 0 to 180 degrees"));
         }
         if !(self.aspect > 0.0 && self.aspect.is_finite()) {

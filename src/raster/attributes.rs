@@ -122,6 +122,7 @@ impl<'a> PlaneMaker<'a> {
                 }
             });
         }
+        fill_tint(planes, &basis, corners);
         if self.is_lit {
             fill_lit(planes, &basis, corners);
         } else {
@@ -138,6 +139,24 @@ impl<'a> PlaneMaker<'a> {
                 || surface.is_some_and(|surface| surface.relief_depth() == 0.0)
         };
         self.parallax && !is_flat(corners.mesh)
+    }
+}
+
+/// Sets the planes of the meshes' colours.
+fn fill_tint(planes: &mut [AttributePlanes], basis: &BasisLanes, corners: &[Corners; 8]) {
+    let has_colors = |lane: usize| !corners[lane].mesh.colors.is_empty();
+    if !(0..8).any(has_colors) {
+        // Planes are kept from tile to tile.
+        return planes.iter_mut().for_each(|planes| planes.tint = None);
+    }
+    let colors = vectors(corners, |mesh, i| mesh.colors.get(i).copied().unwrap_or(Vec3::ONE));
+    let tint = [0, 1, 2].map(|channel| basis.plane(colors.map(|color| color[channel])));
+    for (lane, planes) in planes.iter_mut().enumerate() {
+        if has_colors(lane) {
+            **planes.tint.get_or_insert_default() = [0, 1, 2].map(|i| one(&tint[i], lane));
+        } else {
+            planes.tint = None;
+        }
     }
 }
 

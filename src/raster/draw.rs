@@ -39,7 +39,7 @@ pub struct RasterStats {
     pub coverage_ms: f64,
     /// Attribute planes of the triangles that are seen.
     pub attributes_ms: f64,
-    /// Shading.
+    /// Shading, with the sum of its colours.
     pub shade_ms: f64,
 }
 
@@ -76,7 +76,8 @@ pub fn draw(
         colors.extend(block.pairs().map(|pair| shade(&pair)));
     };
     let drawn = Drawn { scene, settings, group: None, follow: None };
-    Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, frame)
+    frame.fit(TileGrid::new(settings).area.size().map(|side| side as u32));
+    Rasterizer::default().draw(geometry, drawn, &shade, &|| 0.0, &mut frame.pixels)
 }
 
 /// What is drawn, and how.
@@ -96,37 +97,32 @@ pub struct Drawn<'a> {
 impl Rasterizer {
     /// Draws the triangles of `geometry`, which must have been projected from `scene` under
     /// `settings`. `shade` appends the linear red, green and blue of eight pixels for each pair of
-    /// a block, which must depend on that block only. `clock` gives milliseconds. The frame is
-    /// resized to the [area](TileGrid::area) of the tiles and overwritten.
+    /// a block, which must depend on that block only. `clock` gives milliseconds. The pixels, row by
+    /// row those of the [area](TileGrid::area) of the tiles, are overwritten.
     pub fn draw<P: Pixel>(
         &mut self,
         geometry: &Geometry,
         drawn: Drawn,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
         clock: &(dyn Fn() -> f64 + Sync),
-        frame: &mut Frame<P>,
+        pixels: &mut [P],
     ) -> RasterStats {
         let grid = TileGrid::new(drawn.settings);
         let start = clock();
         self.bins.fill(geometry, &grid);
         let binning_ms = clock() - start;
-        [frame.width, frame.height] = grid.area.size().map(|side| side as u32);
-        let num_pixels = frame.width as usize * frame.height as usize;
-        if frame.pixels.len() != num_pixels {
-            // `vec![0; n]` is zeroed lazily by the system, on the thread that first touches a page.
-            frame.pixels = vec![P::default(); num_pixels];
-        }
         // Paint the tiles in parallel. Only times and counts come back to be summed, so the order
         // in which threads end shows nowhere in the picture.
         let painter = Painter { geometry, drawn, grid, bins: &self.bins, clock };
+        let development = Development::of(drawn.settings, P::IS_PICTURE);
         let scratches = &self.scratches;
-        let mut rows = rows_by_tile(frame, &grid);
+        let mut rows = rows_by_tile(pixels, &grid);
         let tiles = rows
             .par_chunks_mut(grid.tile_size as usize)
             .enumerate()
             .map_init(
                 || scratches.take(),
-                |scratch, (tile, rows)| painter.paint(tile, rows, scratch, shade),
+                |scratch, (tile, rows)| painter.paint(tile, rows, scratch, (shade, &development)),
             )
             .reduce(RasterStats::default, RasterStats::add);
         RasterStats { triangles_drawn: geometry.num_triangles() as u64, binning_ms, ..tiles }
@@ -135,12 +131,14 @@ impl Rasterizer {
 
 /// The frame's rows cut into tiles: `tile_size` slices a tile, tile after tile; empty ones below
 /// the frame's last row.
-fn rows_by_tile<'a, P>(frame: &'a mut Frame<P>, grid: &TileGrid) -> Vec<&'a mut [P]> {
-    let (width, tile_size) = (frame.width as usize, grid.tile_size as usize);
+fn rows_by_tile<'a, P>(pixels: &'a mut [P], grid: &TileGrid) -> Vec<&'a mut [P]> {
+    let [width, height] = grid.area.size().map(|side| side as usize);
+    assert_eq!(pixels.len(), width * height, "the pixels must be those of the tiles");
+    let tile_size = grid.tile_size as usize;
     let mut slices = Vec::with_capacity(grid.num() * tile_size);
     let mut rows = Vec::with_capacity(tile_size);
     // Take from every row of a band the piece that belongs to the next tile.
-    for band in frame.pixels.chunks_mut(width * tile_size) {
+    for band in pixels.chunks_mut(width * tile_size) {
         rows.clear();
         rows.extend(band.chunks_mut(width).map(|row| row.chunks_mut(tile_size)));
         for _ in 0..grid.num_tiles[0] {
@@ -169,9 +167,11 @@ impl Painter<'_> {
         tile: usize,
         rows: &mut [&mut [P]],
         scratch: &mut Scratch,
-        shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
+        (shade, development): (
+            &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
+            &Development,
+        ),
     ) -> RasterStats {
-        let development = Development::of(self.drawn.settings, P::IS_PICTURE);
         let rect = self.grid.rect(tile);
         scratch.list.clear();
         self.bins.list(tile, &mut scratch.list);
@@ -195,18 +195,19 @@ impl Painter<'_> {
         if !is_set {
             scratch.canvas.clear();
         }
-        let (pixels_shaded, shade_ms) = self.shade_quads(&rect, scratch, shade);
+        let pixels_shaded = self.shade_quads(&rect, scratch, shade);
+        let shaded = (self.clock)();
         if !is_full {
             scratch.canvas.add_background(self.background());
         }
-        scratch.canvas.develop(&development);
+        scratch.canvas.develop(development);
         scratch.canvas.copy_to(rows);
         RasterStats {
             pixels_shaded,
             quads_shaded: scratch.quads.len() as u64,
             coverage_ms: seen - start,
             attributes_ms: found - seen,
-            shade_ms,
+            shade_ms: shaded - found,
             ..RasterStats::default()
         }
     }
@@ -274,29 +275,27 @@ impl Painter<'_> {
     }
 
     /// Shades the quads block by block and adds their colours to the pixels; gives how many pixels
-    /// that was, and what the shading took.
+    /// that was.
     fn shade_quads(
         &self,
         rect: &Rect,
         scratch: &mut Scratch,
         shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
-    ) -> (u64, f64) {
+    ) -> u64 {
         let Scratch { quads, planes, grounds, colors, canvas, .. } = scratch;
         // One over a power of two: shares of a pixel add up to 1 without rounding.
         let share = 1.0 / self.drawn.settings.msaa as f32;
         let block_of = |quad: &SeenQuad| quad.origin.map(|c| usize::from(c) / SHADED_BLOCK);
-        let (mut num_shaded, mut shade_ms) = (0, 0.0);
+        let mut num_shaded = 0;
         // The list goes block by block, so each block is one run of it.
         for block in quads.chunk_by_mut(|a, b| block_of(a) == block_of(b)) {
             // The stable sort keeps the order of places and triangles.
             block.sort_by_key(|quad| quad.group);
             for quads in block.chunk_by(|a, b| a.group == b.group) {
                 colors.clear();
-                let start = (self.clock)();
                 let [material, group] =
                     grounds[quads[0].triangle as usize].map(|index| index as usize);
                 shade(&QuadBlock { material, group, tile: rect.min, quads, planes }, colors);
-                shade_ms += (self.clock)() - start;
                 for (pair, color) in quads.chunks(2).zip(colors.iter()) {
                     // A pair of whole quads is stored; where others may add their share, it is
                     // added.
@@ -309,7 +308,7 @@ impl Painter<'_> {
                 }
             }
         }
-        (num_shaded, shade_ms)
+        num_shaded
     }
 
     /// Whether the triangle is all that the quad's samples see.

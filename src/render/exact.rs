@@ -119,7 +119,9 @@ impl Exact<'_> {
             // Planes of lit frames have all that makes a point.
             let of_polygon = || surface_point(samples.planes, place);
             let Some(point) = point(lane).or_else(of_polygon) else { continue };
-            let hit = Hit { point, material: self.material, spot: spot(lane) };
+            let spot = spot(lane);
+            let finish = self.material.finish(|map| map.at(spot.place));
+            let hit = Hit { point, finish, spot };
             sum += self.light.shade(&hit, &samples.sequence, samples.first + lane as u32);
             num_found += 1.0;
         }

@@ -1,12 +1,13 @@
 //! What pixels lie on: a material with its texture, and the polygon at places of the screen.
 
+use super::mapped::Glow;
 use super::open_sky::OpenSky;
 use super::outlines::Outlines;
 use crate::filter::Prepared;
 use crate::footprint::{Footprint, Footprints};
-use crate::light::SurfacePoint;
+use crate::light::{LocalLights, SurfacePoint};
 use crate::raster::{AttributePlanes, LitPlanes, Plane, QuadPair};
-use crate::scene::Material;
+use crate::scene::{Finish, Material};
 use crate::shell::ReliefHit;
 use crate::simd::PixelLanes;
 use crate::texture::{FULL_F32, Surface, Texel};
@@ -20,19 +21,23 @@ pub(crate) struct Ground<'a> {
     pub(crate) prepared: &'a Prepared,
     /// The same before light.
     pub(crate) unlit: &'a Prepared,
+    /// The same in the colours of its diffuse layer, where a texture says what of it is metal.
+    pub(crate) diffuse: &'a Prepared,
     /// Whether there is light.
     pub(crate) is_lit: bool,
     /// By what its texels are lit as they are swept: a relief on what is curved, under suns and a sky.
     pub(crate) swept: Option<Swept>,
     /// Where its light is baked.
     pub(crate) baked: Option<LitPiece<'a>>,
+    /// What it sends out by a texture, in a lit frame.
+    pub(crate) glow: Option<&'a Glow>,
 }
 
 /// Lights of a scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swept {
-    /// A bit for each sun.
-    pub(crate) suns: u64,
+    /// A bit for each light.
+    pub(crate) lights: u64,
     /// Whether the sky is one of them.
     pub(crate) has_sky: bool,
 }
@@ -51,6 +56,16 @@ pub(crate) struct LitPiece<'a> {
 }
 
 impl Ground<'_> {
+    /// Takes from the lights of pixels, in the order of their covered lanes, what a texture of
+    /// occlusion says.
+    pub(super) fn occlude(&self, pixels: &[Footprints], lights: &mut [LocalLights]) {
+        let Some(map) = &self.material.maps.occlusion else { return };
+        let pixels = pixels.iter().flat_map(|p| p.covered().map(|lane| p.lane(lane)));
+        for (pixel, lights) in pixels.zip(lights) {
+            lights.occlude(map.over(pixel.hit, [pixel.dx, pixel.dy])[0].min(1.0));
+        }
+    }
+
     /// The rays of up to eight samples of a pixel through places on the screen.
     pub(super) fn rays(
         &self,
@@ -88,6 +103,17 @@ impl Ground<'_> {
     /// Whether lights are evaluated place by place.
     pub(crate) fn asks_for_lights(&self) -> bool {
         self.is_lit && self.baked.is_none() && self.swept.is_none()
+    }
+
+    /// What the material does with light at a pixel: around its hit, whatever hides parts of it.
+    pub(super) fn finish(&self, pixel: &Footprint) -> Finish {
+        let finish = self.material.finish(|map| map.over(pixel.hit, [pixel.dx, pixel.dy]));
+        Finish { emissive: self.emissive(), ..finish }
+    }
+
+    /// What it sends out without a texture.
+    pub(super) fn emissive(&self) -> Vec3 {
+        if self.glow.is_some() { Vec3::ZERO } else { self.material.emissive }
     }
 
     /// The colour of a surface's texel as the material shows it.

@@ -13,8 +13,11 @@ mod curved_lights;
 mod curved_shadows;
 mod exact;
 mod ground;
+mod mapped;
 mod open_sky;
 mod outlines;
+mod passages;
+mod points;
 mod prepared;
 mod reflections;
 mod shade;
@@ -22,14 +25,15 @@ mod shadows;
 mod skies;
 
 pub(crate) use outlines::Outlines;
+pub(crate) use passages::Passages;
 pub(crate) use prepared::PreparedScene;
 pub(crate) use shade::{ShadeScratch, Shader};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::{Frame, Pixel};
 use crate::geometry::Geometry;
 use crate::raster::{Drawn, Follow, Pool, QuadBlock, Rasterizer, TileGrid};
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Mesh, Scene};
 use crate::settings::{Region, Settings};
 
 /// What drawing a frame took, in milliseconds: of the whole frame for `geometry_ms`, `raster_ms`
@@ -117,6 +121,30 @@ impl Renderer {
         Ok(())
     }
 
+    /// Draws the next frames with other meshes in the place of some, by their index: a mesh that
+    /// moves, or changes its shape. They are exchanged, so that their memory can be taken again.
+    /// Surfaces stay as they are; in lit frames what meshes hide from each other is made anew.
+    ///
+    /// # Errors
+    /// Names the first mesh that does not exist or is not valid; then none is exchanged.
+    pub fn exchange_meshes(&mut self, meshes: &mut [(usize, Mesh)]) -> Result<()> {
+        let num = self.scene.meshes.len();
+        for (i, mesh) in meshes.iter() {
+            let part = || format!("mesh {i} ({})", mesh.name.escape_debug());
+            if *i >= num {
+                return Err(Error::scene(part(), format!("is not one of {num} meshes")));
+            }
+            let checked = mesh.validate(self.scene.materials.len());
+            checked.map_err(|reason| Error::scene(part(), reason))?;
+        }
+        for (i, mesh) in meshes {
+            std::mem::swap(&mut self.scene.meshes[*i], mesh);
+        }
+        self.prepared.forget_meshes();
+        self.prepared.make_ready(&self.scene, &self.settings);
+        Ok(())
+    }
+
     /// Draws the next frames' part `region`, or the whole frames, and leaves the other settings as
     /// they are.
     ///
@@ -166,10 +194,33 @@ impl Renderer {
         frame: &mut Frame<P>,
         clock: &(dyn Fn() -> f64 + Sync),
     ) -> Stats {
-        P::draw(self, frame, clock)
+        let area = TileGrid::new(&self.settings).area;
+        frame.fit(area.size().map(|side| side as u32));
+        let stats = P::draw(self, &mut frame.pixels, clock);
+        if let Some(region) = self.settings.region {
+            // The tiles cover whole blocks, which begin a few pixels before the region.
+            let [x, y] = area.min.map(|v| v as u32);
+            frame.crop(Region { x: region.x - x, y: region.y - y, ..region });
+        }
+        stats
     }
 
-    fn draw<P: Pixel>(&mut self, frame: &mut Frame<P>, clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
+    /// Draws over pixels of the caller's, row by row from the top: no memory is taken for the
+    /// picture, unless it is a [region](Settings::region).
+    ///
+    /// # Panics
+    /// If they are not as many as [`Settings::drawn`] says.
+    pub fn render_to<P: DrawnPixel>(&mut self, pixels: &mut [P]) {
+        if self.settings.region.is_some() {
+            let mut frame = Frame::default();
+            self.render_into(&mut frame);
+            pixels.copy_from_slice(&frame.pixels);
+        } else {
+            P::draw(self, pixels, &|| 0.0);
+        }
+    }
+
+    fn draw<P: Pixel>(&mut self, pixels: &mut [P], clock: &(dyn Fn() -> f64 + Sync)) -> Stats {
         let Self { scene, settings, prepared, pool, geometry, rasterizer } = self;
         let start = clock();
         // All triangles are projected before the first tile begins: its list must be complete.
@@ -179,16 +230,13 @@ impl Renderer {
         let group = |triangle| prepared.group(scene, triangle);
         let group = prepared.is_baked().then_some(&group as &(dyn Fn(_) -> _ + Sync));
         let outlines = prepared.outlines(scene, settings, geometry.projection());
-        let shader = Shader::new(scene, settings, prepared, outlines.as_ref(), pool);
+        let outlines = outlines.as_ref();
+        let shader = Shader::new(scene, settings, prepared, outlines, pool);
         let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
-        let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
+        let passages = Passages::new(scene, geometry.projection(), outlines);
+        let follow = passages.as_ref().map(|passages| passages as &dyn Follow);
         let drawn = Drawn { scene, settings, group, follow };
-        let counts = rasterizer.draw(geometry, drawn, &shade, clock, frame);
-        if let Some(region) = settings.region {
-            // The tiles cover whole blocks, which begin a few pixels before the region.
-            let [x, y] = TileGrid::new(settings).area.min.map(|v| v as u32);
-            frame.crop(Region { x: region.x - x, y: region.y - y, ..region });
-        }
+        let counts = rasterizer.draw(geometry, drawn, &shade, clock, pixels);
         let work = shader.work();
         Stats {
             geometry_ms: projected - start,
@@ -218,7 +266,7 @@ pub trait DrawnPixel: Pixel {
     #[doc(hidden)]
     fn draw(
         renderer: &mut Renderer,
-        frame: &mut Frame<Self>,
+        pixels: &mut [Self],
         clock: &(dyn Fn() -> f64 + Sync),
     ) -> Stats;
 }
@@ -226,20 +274,20 @@ pub trait DrawnPixel: Pixel {
 impl DrawnPixel for [f32; 4] {
     fn draw(
         renderer: &mut Renderer,
-        frame: &mut Frame<Self>,
+        pixels: &mut [Self],
         clock: &(dyn Fn() -> f64 + Sync),
     ) -> Stats {
-        renderer.draw(frame, clock)
+        renderer.draw(pixels, clock)
     }
 }
 
 impl DrawnPixel for [u8; 4] {
     fn draw(
         renderer: &mut Renderer,
-        frame: &mut Frame<Self>,
+        pixels: &mut [Self],
         clock: &(dyn Fn() -> f64 + Sync),
     ) -> Stats {
-        renderer.draw(frame, clock)
+        renderer.draw(pixels, clock)
     }
 }
 

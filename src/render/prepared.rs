@@ -2,6 +2,7 @@
 
 use super::baked::Baked;
 use super::ground::{Ground, Swept};
+use super::mapped::Mapped;
 use super::outlines::Outlines;
 use super::skies::Skies;
 use crate::filter::Prepared;
@@ -10,7 +11,7 @@ use crate::light::Disc;
 use crate::light::exact::{Ceiling, Occluders};
 use crate::light::reflection::Reflectance;
 use crate::relief::HeightField;
-use crate::scene::{Light, Mesh, Scene};
+use crate::scene::{Light, Material, Mesh, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::shell::Shell;
 use crate::texture::Surface;
@@ -28,16 +29,19 @@ pub(crate) struct PreparedScene {
     surfaces: Vec<Prepared>,
     /// The same drawn flat, as they are where relief is not traced.
     flat: Vec<Prepared>,
+    has_points: bool,
     /// The surface of each material that has one.
     of_material: Vec<Option<usize>>,
     /// Lit for good, with relief or without; `None` where lights are evaluated place by place.
     baked: Option<(bool, Baked)>,
+    /// Of the materials that have textures of their numbers, in lit frames; with relief or without.
+    mapped: Option<(bool, Vec<Option<Mapped>>)>,
     /// What lit frames ask for, made when the first of them does.
     reflectance: OnceLock<Reflectance>,
     /// What the truth's light and shadows ask for.
     occluders: OnceLock<Occluders>,
-    /// What curved surfaces ask for: of each sun.
-    ceilings: OnceLock<Vec<Ceiling>>,
+    /// What curved surfaces ask for: of each light that is a sun.
+    ceilings: OnceLock<Vec<Option<Ceiling>>>,
     /// The same of the sky.
     skies: OnceLock<Skies>,
     /// The relief of each mesh that has one, for rays that may pass it or meet another mesh in it.
@@ -81,8 +85,25 @@ impl PreparedScene {
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
         let (reflectance, occluders, ceilings, skies, shells) = Default::default();
-        let baked = None;
-        Self { surfaces, flat, of_material, baked, reflectance, occluders, ceilings, skies, shells }
+        Self {
+            surfaces,
+            flat,
+            has_points: scene.lights.iter().any(|light| matches!(light, Light::Point { .. })),
+            of_material,
+            baked: None,
+            mapped: None,
+            reflectance,
+            occluders,
+            ceilings,
+            skies,
+            shells,
+        }
+    }
+
+    /// Forgets what is made of meshes, which have changed.
+    pub(crate) fn forget_meshes(&mut self) {
+        self.baked = None;
+        (self.occluders, self.ceilings, self.skies, self.shells) = Default::default();
     }
 
     /// Makes what frames of the scene with these settings need, so that no frame has to wait for
@@ -100,9 +121,12 @@ impl PreparedScene {
         if is_lit && is_exact {
             self.occluders(scene);
         }
-        // Where a point shines, no piece is lit alike all over.
-        let has_points = scene.lights.iter().any(|light| matches!(light, Light::Point { .. }));
-        if is_lit && !is_exact && !has_points {
+        if is_lit && !is_exact && self.mapped.as_ref().is_none_or(|m| m.0 != settings.parallax) {
+            self.mapped = Some((settings.parallax, self.mapped(scene, settings.parallax)));
+        }
+        // Where a point shines, only a filter that asks for lights adds it to what is baked.
+        let asks = settings.filter.traits().asks_for_lights;
+        if is_lit && !is_exact && (!self.has_points || asks) {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
             let unlit = |material| self.of_material(material, settings.parallax);
@@ -112,12 +136,18 @@ impl PreparedScene {
             }
             let curved = baked.curved(scene).map(|mesh| mesh.material).collect::<Vec<_>>();
             self.baked = Some((settings.parallax, baked));
-            if !curved.is_empty() && settings.filter.traits().asks_for_lights {
+            if !curved.is_empty() && asks {
                 self.ceilings(scene);
                 self.skies(scene);
-                for material in curved {
+            }
+            if asks {
+                let all = scene.meshes.iter().map(|mesh| mesh.material).filter(|_| self.has_points);
+                for material in curved.into_iter().chain(all) {
                     self.of_material(material, settings.parallax).map(Prepared::horizons);
                 }
+            }
+            if self.has_points {
+                self.occluders(scene);
             }
         } else {
             self.baked = None;
@@ -131,6 +161,15 @@ impl PreparedScene {
                 .into_par_iter()
                 .for_each(|(surface, is_lit)| surface.make_ready(&settings.filter, is_lit));
         }
+    }
+
+    /// What textures of materials' numbers are drawn by.
+    fn mapped(&self, scene: &Scene, has_relief: bool) -> Vec<Option<Mapped>> {
+        let of = |(i, material): (usize, &Material)| {
+            let unlit = self.of_material(i, has_relief).filter(|_| !material.maps.is_empty())?;
+            Some(Mapped::new(material, unlit))
+        };
+        scene.materials.iter().enumerate().map(of).collect()
     }
 
     /// How much surfaces reflect.
@@ -176,8 +215,13 @@ impl PreparedScene {
         self.of_material(mesh.material, true)?.field()
     }
 
-    /// What may hide each sun from curved surfaces; nothing else than suns shines there.
-    pub(crate) fn ceilings(&self, scene: &Scene) -> &[Ceiling] {
+    /// Whether any light is a point.
+    pub(crate) fn has_points(&self) -> bool {
+        self.has_points
+    }
+
+    /// What may hide each light from curved surfaces; `None` for a point.
+    pub(crate) fn ceilings(&self, scene: &Scene) -> &[Option<Ceiling>] {
         self.ceilings.get_or_init(|| {
             let Some((_, baked)) = &self.baked else { return Vec::new() };
             let triangles = self.occluders(scene).triangles();
@@ -190,7 +234,7 @@ impl PreparedScene {
                     baked.curved(scene).flat_map(|mesh| mesh.positions.iter().copied()),
                 ))
             };
-            scene.lights.iter().filter_map(ceiling).collect()
+            scene.lights.iter().map(ceiling).collect()
         })
     }
 
@@ -229,6 +273,8 @@ impl PreparedScene {
         let (prepared, baked) =
             baked.map_or((unlit, None), |(prepared, baked)| (prepared, Some(baked)));
         let is_lit = settings.lighting == Lighting::Lit;
+        let mapped = self.mapped.as_ref().filter(|_| is_lit);
+        let mapped = mapped.and_then(|(_, of)| of.get(material)?.as_ref());
         let material = &scene.materials[material];
         let is_swept = scene.lights.len() <= 64
             && self.baked.is_some()
@@ -236,8 +282,11 @@ impl PreparedScene {
             && settings.filter.traits().asks_for_lights
             && prepared.field().is_some()
             && prepared.surface().has_normals();
-        let swept = is_swept.then_some(Swept { suns: u64::MAX, has_sky: true });
-        Some(Ground { material, prepared, unlit, is_lit, swept, baked })
+        let swept = is_swept.then_some(Swept { lights: u64::MAX, has_sky: true });
+        let diffuse = mapped.and_then(|mapped| mapped.diffuse.as_ref()).unwrap_or(unlit);
+        let prepared = if is_swept { diffuse } else { prepared };
+        let glow = mapped.and_then(|mapped| mapped.glow.as_ref());
+        Some(Ground { material, prepared, unlit, diffuse, is_lit, swept, baked, glow })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

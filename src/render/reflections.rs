@@ -11,6 +11,7 @@
 //! hide nothing.
 
 use super::ground::{Ground, in_lanes};
+use super::points::HiddenLights;
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
 use crate::filter::{Batch, Filtered, Prepared};
 use crate::light::reflection::Fresnel;
@@ -26,12 +27,13 @@ impl Shader<'_> {
     pub(super) fn reflect(
         &self,
         ground: &Ground,
+        hidden: &HiddenLights,
         block: &QuadBlock,
         scratch: &mut ShadeScratch,
         colors: &mut [[PixelLanes; 3]],
     ) {
         if ground.material.is_matte() {
-            let emissive = ground.material.emissive.to_array();
+            let emissive = ground.emissive().to_array();
             for color in colors {
                 color.iter_mut().zip(emissive).for_each(|(channel, more)| *channel += more);
             }
@@ -39,19 +41,20 @@ impl Shader<'_> {
         }
         for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
             let pairs = first..block.num_pairs().min(first + PAIRS_AT_ONCE);
-            self.reflect_pairs(ground, (block, pairs.clone()), scratch, &mut colors[pairs]);
+            let colors = &mut colors[pairs.clone()];
+            self.reflect_pairs((ground, hidden), (block, pairs), scratch, colors);
         }
     }
 
     fn reflect_pairs(
         &self,
-        ground: &Ground,
+        (ground, hidden): (&Ground, &HiddenLights),
         (block, pairs): (&QuadBlock, Range<usize>),
         scratch: &mut ShadeScratch,
         colors: &mut [[PixelLanes; 3]],
     ) {
         let ShadeScratch { filter, footprints, lights, filtered } = scratch;
-        let (material, surface) = (ground.material, ground.unlit.surface());
+        let surface = ground.unlit.surface();
         let mips = Filter::Trilinear(Trilinear::default());
         self.footprints((ground.unlit, &mips.traits().rule), (block, pairs.clone()), footprints);
         lights.clear();
@@ -59,36 +62,43 @@ impl Shader<'_> {
         filtered.resize(pairs.len(), Filtered::default());
         let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
         self.count(mips.colors(ground.unlit, &batch, filter, filtered));
-        let bases: Vec<_> = footprints
-            .iter()
-            .zip(&*filtered)
-            .flat_map(|(pixels, filtered)| pixels.covered().map(|lane| filtered.lane(lane)))
-            .collect();
+        hidden.dim(lights, (block, pairs.clone()));
+        ground.occlude(footprints, lights);
+        let places = footprints.iter().zip(&*filtered).flat_map(|(pixels, filtered)| {
+            pixels.covered().map(|lane| (pixels.lane(lane), filtered.lane(lane)))
+        });
+        let places: Vec<_> = places.map(|(pixel, texel)| (ground.finish(&pixel), texel)).collect();
         let gloss = self.gloss(ground).inspect(|(gloss, horizon)| {
-            let straight = Fresnel::new(material, mean_base(ground));
-            let glossy: Vec<_> =
-                lights.iter().map(|lights| lights.glossy(material, &straight)).collect();
+            let mean = mean_base(ground);
+            let glossy = lights
+                .iter()
+                .zip(&places)
+                .map(|(lights, (finish, _))| lights.glossy(finish, &Fresnel::new(finish, mean)));
+            let glossy: Vec<_> = glossy.collect();
             self.footprints((gloss, &horizon.traits().rule), (block, pairs), footprints);
             let batch =
                 Batch { pixels: footprints, lights: &glossy, curved: None, is_alone: false };
             self.count(horizon.colors(gloss, &batch, filter, filtered));
         });
+        // With a texture of metal the colours are those of the diffuse layer already.
+        let has_layer = ground.material.maps.metallic.is_some();
+        let dielectric = if has_layer { 1.0 } else { 1.0 - ground.material.metallic };
         // The lights come in the order in which they were listed.
-        let mut each = lights.iter().zip(bases);
+        let mut each = lights.iter().zip(places);
         for (color, (pixels, filtered)) in colors.iter_mut().zip(footprints.iter().zip(&*filtered))
         {
             let mut lit = [Vec3::ZERO; 8];
             let diffuse = color.map(|channel| channel.to_array());
-            for (lane, (lights, texel)) in pixels.covered().zip(&mut each) {
+            for (lane, (lights, (finish, texel))) in pixels.covered().zip(&mut each) {
                 let seen = filtered.lane(lane);
                 let base = ground.color_of(surface, &texel);
                 let highlights = gloss.map(|(gloss, _)| {
                     Vec3::from(seen.color) * (gloss.surface().color_scale() / FULL_F32)
                 });
                 let normal = seen.normal.into();
-                let on_top = self.reflected((material, base), normal, lights, highlights);
+                let on_top = self.reflected((&finish, base), normal, lights, highlights);
                 let diffuse = Vec3::from(diffuse.map(|channel| channel[lane]));
-                lit[lane] = diffuse * on_top.diffuse_share + on_top.added;
+                lit[lane] = diffuse * (on_top.passed * dielectric) + on_top.added;
             }
             *color = in_lanes(&lit);
         }

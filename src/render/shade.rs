@@ -3,14 +3,16 @@
 use super::curved_lights::CurvedLights;
 use super::exact::Exact;
 use super::ground::{Ground, in_lanes, of_hits, pixel_center, surface_point};
+use super::mapped::Glow;
 use super::outlines::Outlines;
+use super::points::HiddenLights;
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Samples, Scratch, Traits, Work};
-use crate::footprint::{FootprintRule, Footprints};
+use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::light::exact::ExactLight;
 use crate::light::{LocalLights, Reflected};
 use crate::raster::{Pool, QuadBlock, QuadPair};
-use crate::scene::{Material, Scene};
+use crate::scene::{Finish, Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
 use crate::texture::Texel;
@@ -40,6 +42,8 @@ pub(crate) struct Shader<'a> {
     exact: Option<ExactLight<'a>>,
     /// Where rays end on curved meshes; `None` where all reliefs are taken for flat.
     outlines: Option<&'a Outlines<'a>>,
+    /// Whether any mesh has colours of its own.
+    has_tints: bool,
     pool: &'a Pool<ShadeScratch>,
     num_texels: [AtomicU64; 2],
 }
@@ -66,8 +70,18 @@ impl<'a> Shader<'a> {
             && traits.samples.is_some_and(|samples| samples.is_exact);
         let exact = is_exact.then(|| ExactLight { scene, occluders: prepared.occluders(scene) });
         let samples = traits.samples.map(Samples::offsets);
-        let num_texels = Default::default();
-        Self { scene, settings, prepared, traits, samples, exact, outlines, pool, num_texels }
+        Self {
+            scene,
+            settings,
+            prepared,
+            traits,
+            samples,
+            exact,
+            outlines,
+            has_tints: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty()),
+            pool,
+            num_texels: Default::default(),
+        }
     }
 
     /// What filtering took so far.
@@ -88,23 +102,67 @@ impl<'a> Shader<'a> {
             let (filter, is_traced) = (&self.settings.filter, self.traits.rule.is_traced);
             let outlines = self.outlines;
             let exact = Exact { light, samples, filter, is_traced, material, ground, outlines };
-            return colors
-                .extend(block.pairs().map(|pair| exact.colors(&pair, &mut scratch.filter)));
+            return colors.extend(block.pairs().map(|pair| {
+                let mut color = [exact.colors(&pair, &mut scratch.filter)];
+                tint(std::iter::once(pair), &mut color);
+                color[0]
+            }));
         }
         let Some(ground) = ground else {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
         let start = colors.len();
+        let num_lights = if ground.is_lit { self.scene.lights.len() } else { 0 };
+        let mut hidden = HiddenLights::none(num_lights);
+        // What only sends out light sends out its colour.
+        let is_glowing = material.base_color == Vec3::ZERO;
         if let Some(swept) = ground.swept {
-            self.swept(&ground, swept, block, &mut scratch, colors);
+            let shown = self.hide_on_curved(&ground, block, &mut hidden);
+            self.hide_points(&ground, block, &mut hidden);
+            self.swept(&ground, (swept, &hidden), block, &mut scratch, colors);
+            for (color, shown) in colors[start..].iter_mut().zip(shown) {
+                color.iter_mut().for_each(|channel| *channel *= shown);
+            }
         } else {
             self.textured(&ground, block, &mut scratch, colors);
         }
+        let colors = &mut colors[start..];
         if let Some(lit) = ground.baked {
-            self.shadow(&ground, &lit, block, &mut scratch, &mut colors[start..]);
+            self.shadow((&ground, &lit), block, &mut scratch, &mut hidden, colors);
+            if self.prepared.has_points() {
+                self.hide_points(&ground, block, &mut hidden);
+                self.shine(&ground, &hidden, block, &mut scratch, colors);
+            }
+        }
+        if self.has_tints && !is_glowing {
+            tint(block.pairs(), colors);
         }
         if ground.baked.is_some() || ground.swept.is_some() {
-            self.reflect(&ground, block, &mut scratch, &mut colors[start..]);
+            self.reflect(&ground, &hidden, block, &mut scratch, colors);
+        }
+        if let Some(glow) = ground.glow {
+            self.glow(&ground, glow, block, &mut scratch, colors);
+        }
+        if self.has_tints && is_glowing {
+            tint(block.pairs(), colors);
+        }
+    }
+
+    /// Adds what a surface sends out by a texture.
+    fn glow(
+        &self,
+        ground: &Ground,
+        Glow { material, prepared }: &Glow,
+        block: &QuadBlock,
+        scratch: &mut ShadeScratch,
+        colors: &mut [[PixelLanes; 3]],
+    ) {
+        let unlit = Ground { is_lit: false, swept: None, baked: None, glow: None, ..*ground };
+        let mut sent = Vec::with_capacity(colors.len());
+        let sending = Ground { material, prepared, unlit: prepared, diffuse: prepared, ..unlit };
+        self.textured(&sending, block, scratch, &mut sent);
+        for (color, sent) in colors.iter_mut().zip(&sent) {
+            (0..3).for_each(|c| color[c] += sent[c]);
         }
     }
 
@@ -129,14 +187,23 @@ impl<'a> Shader<'a> {
     /// Pixels of a material without a texture.
     fn plain(&self, pair: &QuadPair, material: &Material) -> [PixelLanes; 3] {
         let mut colors = [Vec3::ZERO; 8];
+        let tint = pair.tint();
+        let tint = |lane: usize| {
+            tint.map_or(Vec3::ONE, |tint| Vec3::from(tint.map(|c| c.as_array()[lane])))
+        };
         // Helper lanes stay black: nothing adds them to a pixel.
         for lane in pair.covered() {
+            let base = material.base_color * tint(lane);
             colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
                 Some(lights) => {
                     // Nothing bends the normal here: it is z in the surface's own frame.
-                    self.lit_color(material, (material.base_color, false), Vec3::Z, &lights)
+                    let mut finish = material.plain_finish();
+                    if material.base_color == Vec3::ZERO {
+                        finish.emissive *= tint(lane);
+                    }
+                    self.lit_color(&finish, (base, false), Vec3::Z, &lights)
                 }
-                None => material.base_color,
+                None => base,
             };
         }
         in_lanes(&colors)
@@ -157,18 +224,20 @@ impl<'a> Shader<'a> {
         self.footprints(with, (block, pairs.clone()), footprints);
         if ground.asks_for_lights() {
             self.list_lights((block, pairs.clone()), lights);
+            ground.occlude(footprints, lights);
         }
         // Filter all pairs at once, so that pixels near each other can share work.
         // Whatever an earlier block left stays: each covered pixel is written, others are not looked at.
         filtered.resize(pairs.len(), Filtered::default());
-        let curved_lights;
+        let mut curved_lights;
         let curved = if let Some(swept) = ground.swept {
             curved_lights = CurvedLights::new(
                 (self.scene, self.prepared.skies(self.scene)),
-                swept,
+                (swept, ground.prepared.surface().relief_depth()),
                 block,
                 pairs.clone(),
             );
+            curved_lights.occlude(ground, footprints);
             Some(curved_lights.all())
         } else {
             None
@@ -181,7 +250,8 @@ impl<'a> Shader<'a> {
             colors.extend(footprints.iter().zip(filtered.iter()).map(|(pixels, filtered)| {
                 let mut colors = [Vec3::ZERO; 8];
                 for (lane, lights) in pixels.covered().zip(&mut lights) {
-                    colors[lane] = self.lit(ground, &filtered.lane(lane), Some(lights));
+                    let pixel = pixels.lane(lane);
+                    colors[lane] = self.lit(ground, (&filtered.lane(lane), &pixel), Some(lights));
                 }
                 in_lanes(&colors)
             }));
@@ -235,6 +305,7 @@ impl<'a> Shader<'a> {
         for groups in samples.groups.chunks(GROUPS_AT_ONCE) {
             self.cast(ground, pair, groups, scratch);
             let ShadeScratch { filter, footprints, lights, filtered } = &mut *scratch;
+            ground.occlude(footprints, lights);
             filtered.resize(footprints.len(), Filtered::default());
             let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
             self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
@@ -245,7 +316,8 @@ impl<'a> Shader<'a> {
             for lane in pair.covered() {
                 for (rays, filtered) in found.by_ref().take(groups.len()) {
                     for i in rays.covered() {
-                        sums[lane] += self.lit(ground, &filtered.lane(i), lights.next());
+                        let (texel, ray) = (filtered.lane(i), rays.lane(i));
+                        sums[lane] += self.lit(ground, (&texel, &ray), lights.next());
                         nums[lane] += 1.0;
                     }
                 }
@@ -307,20 +379,25 @@ impl<'a> Shader<'a> {
         self.num_texels[1].fetch_add(work.num_averaged, Ordering::Relaxed);
     }
 
-    /// The colour of a filtered texel.
-    fn lit(&self, ground: &Ground, texel: &Texel, lights: Option<&LocalLights>) -> Vec3 {
+    /// The colour of a filtered texel of a pixel.
+    fn lit(
+        &self,
+        ground: &Ground,
+        (texel, pixel): (&Texel, &Footprint),
+        lights: Option<&LocalLights>,
+    ) -> Vec3 {
         let color = ground.color_of(ground.prepared.surface(), texel);
         let Some(lights) = lights else { return color };
         let normal = Vec3::from(texel.normal);
         let has_light = self.traits.asks_for_lights;
-        self.lit_color(ground.material, (color, has_light), normal, lights)
+        self.lit_color(&ground.finish(pixel), (color, has_light), normal, lights)
     }
 
     /// A colour under lights; a filter that asks for lights has the diffuse part in its mean
     /// already, texel by texel.
     fn lit_color(
         &self,
-        material: &Material,
+        finish: &Finish,
         (color, has_light): (Vec3, bool),
         normal: Vec3,
         lights: &LocalLights,
@@ -329,24 +406,24 @@ impl<'a> Shader<'a> {
         let mut diffuse = color;
         if !has_light {
             diffuse *= lights.diffuse(normal, sky);
-        } else if material.metallic > 0.0 {
+        } else if finish.metallic > 0.0 {
             // What has this colour in this light.
             base /= lights.diffuse(normal, sky).max(Vec3::splat(1e-6));
         }
-        let reflected = self.reflected((material, base), normal, lights, None);
-        diffuse * reflected.diffuse_share + reflected.added
+        let reflected = self.reflected((finish, base), normal, lights, None);
+        diffuse * (reflected.passed * (1.0 - finish.metallic)) + reflected.added
     }
 
     /// What a material whose base colour is `base` does with lights.
     pub(super) fn reflected(
         &self,
-        (material, base): (&Material, Vec3),
+        (finish, base): (&Finish, Vec3),
         normal: Vec3,
         lights: &LocalLights,
         highlights: Option<Vec3>,
     ) -> Reflected {
         let reflectance = self.prepared.reflectance();
-        lights.reflected(normal, (material, base), &self.scene.sky, reflectance, highlights)
+        lights.reflected(normal, (finish, base), &self.scene.sky, reflectance, highlights)
     }
 
     /// Lists the lights of the covered pixels of pairs of a block, pair by pair and lane by lane.
@@ -366,5 +443,14 @@ impl<'a> Shader<'a> {
         let point = self.is_lit().then(|| surface_point(pair.planes[lane / 4], place))??;
         let Scene { camera, lights, sky, .. } = self.scene;
         Some(LocalLights::at(&point, camera.eye, lights, sky))
+    }
+}
+
+/// Multiplies colours by those of the meshes.
+fn tint<'a>(pairs: impl Iterator<Item = QuadPair<'a>>, colors: &mut [[PixelLanes; 3]]) {
+    for (color, pair) in colors.iter_mut().zip(pairs) {
+        if let Some(tint) = pair.tint() {
+            *color = std::array::from_fn(|c| color[c] * tint[c]);
+        }
     }
 }

@@ -5,6 +5,8 @@
 //! keep their own handedness; a triangle without area, in space or in the texture, adds nothing to
 //! the average.
 
+use super::light::is_light;
+use crate::error::{Error, Result};
 use glam::{DVec3, Vec2, Vec3};
 
 /// Largest component of a position: products of larger ones leave the range of f32.
@@ -27,6 +29,9 @@ pub struct Mesh {
     pub tex_coords: Vec<Vec2>,
     /// One unit vector per position.
     pub normals: Vec<Vec3>,
+    /// Linear RGB, 0 to 1e6, one per position, that multiplies the material's base colour; empty:
+    /// white.
+    pub colors: Vec<Vec3>,
     /// `dP/du` and `dP/dv`, one pair per position where there are texture coordinates, else empty.
     pub tangents: Vec<[Vec3; 2]>,
 }
@@ -47,6 +52,49 @@ impl Mesh {
         }
         mesh.tangents = mesh.area_weighted_tangents();
         mesh
+    }
+
+    /// The mesh moved by an affine matrix, row by row, which may turn, move, stretch and shear; into
+    /// another mesh, whose memory is taken again.
+    ///
+    /// # Errors
+    /// Says so where the matrix is not finite, not affine, flat, or mirrors.
+    pub fn place(&self, matrix: &[[f32; 4]; 4], into: &mut Self) -> Result<()> {
+        let refuse = |reason: &str| Err(Error::scene("transform", reason));
+        let [x, y, z, origin] =
+            [0, 1, 2, 3].map(|column| DVec3::from([0, 1, 2].map(|i| f64::from(matrix[i][column]))));
+        if matrix[3] != [0.0, 0.0, 0.0, 1.0] || ![x, y, z, origin].iter().all(|v| v.is_finite()) {
+            return refuse("its last row must be 0, 0, 0, 1, and all numbers finite");
+        }
+        // Normals go with the planes that they stand on: by the cofactors.
+        let normals = [y.cross(z), z.cross(x), x.cross(y)];
+        if x.dot(normals[0]) <= 0.0 {
+            return refuse("it must not mirror or flatten: its determinant must be above 0");
+        }
+        let along = |[x, y, z]: [DVec3; 3], v: Vec3| {
+            let v = v.as_dvec3();
+            x * v.x + y * v.y + z * v.z
+        };
+        let direction = |v: Vec3| along([x, y, z], v).as_vec3();
+        // As long as it was, so that what stays in place keeps its bits.
+        let normal = |n: &Vec3| {
+            let turned = along(normals, *n);
+            (turned * (n.as_dvec3().length() / turned.length())).as_vec3()
+        };
+        let Self { name, material, triangles, positions, tex_coords, normals: own, .. } = self;
+        let Self { tangents, colors, .. } = self;
+        into.name.clone_from(name);
+        into.material = *material;
+        into.triangles.clone_from(triangles);
+        into.tex_coords.clone_from(tex_coords);
+        into.colors.clone_from(colors);
+        into.positions.clear();
+        into.positions.extend(positions.iter().map(|p| (along([x, y, z], *p) + origin).as_vec3()));
+        into.normals.clear();
+        into.normals.extend(own.iter().map(normal));
+        into.tangents.clear();
+        into.tangents.extend(tangents.iter().map(|axes| axes.map(direction)));
+        Ok(())
     }
 
     /// Corners in f64: products of the largest and smallest positions allowed leave the range of
@@ -93,7 +141,7 @@ impl Mesh {
         frames.map(|((axes, weight), normal)| average_frame(axes, weight, *normal)).collect()
     }
 
-    pub(crate) fn validate(&self, num_materials: usize) -> Result<(), String> {
+    pub(crate) fn validate(&self, num_materials: usize) -> std::result::Result<(), String> {
         let num = self.positions.len();
         if self.material >= num_materials {
             return Err(format!("material {} of {num_materials} does not exist", self.material));
@@ -102,6 +150,12 @@ impl Mesh {
             return Err(format!(
                 "{num} positions need as many normals, and as many texture coordinates or none"
             ));
+        }
+        if ![0, num].contains(&self.colors.len()) {
+            return Err(format!("{num} positions need as many colours, or none"));
+        }
+        if !self.colors.iter().all(|color| is_light(*color)) {
+            return Err("colours must be within 0 to 1e6".into());
         }
         if self.tangents.len() != self.tex_coords.len() {
             return Err("tangents are missing; Mesh::new makes them".into());
@@ -234,6 +288,8 @@ mod tests {
         assert!(with(|m| m.triangles[0][1] = 4).is_err());
         assert!(with(|m| m.normals.clear()).is_err());
         assert!(with(|m| m.tangents.clear()).is_err());
+        assert!(with(|m| m.colors = vec![Vec3::ONE; 3]).is_err());
+        assert!(with(|m| m.colors = vec![Vec3::NEG_ONE; 4]).is_err());
         assert!(with(|m| m.positions[0].x = f32::NAN).is_err());
         assert!(with(|m| m.tex_coords[0].y = f32::INFINITY).is_err());
     }

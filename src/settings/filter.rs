@@ -126,8 +126,8 @@ pub struct Visible {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon {
     /// How finely footprints are cut, 2 to 64: two lines for three of these, five at least, on a mip
-    /// level with at most twice as many texels across. More is finer and slower: 4 is fast, 24 is as
-    /// good as it gets. Default: 12.
+    /// level with at most 2 to 2.75 times as many texels across. More is finer and slower: 4 is fast,
+    /// 24 is as good as it gets. Default: 12.
     pub lines: u32,
     /// Whether tables of the seen colour serve distant footprints, unlit. Default: `true`.
     pub far_field: bool,

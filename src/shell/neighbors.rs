@@ -36,7 +36,8 @@ pub(super) fn find(mesh: &Mesh) -> Vec<[u32; 3]> {
         let &[(_, a), (_, b)] = pair else { continue };
         let ([a0, a1], [b0, b1]) = (ends(a), ends(b));
         // Neighbours of one orientation go along their edge in opposite directions.
-        let is_whole = places[a0] == places[b1] && places[a1] == places[b0];
+        let is_whole =
+            places[a0] == places[b1] && places[a1] == places[b0] && places[a0] != places[a1];
         let is_smooth = |i: usize, j: usize| mesh.normals[i].dot(mesh.normals[j]) >= SMOOTH;
         if is_whole && is_smooth(a0, b1) && is_smooth(a1, b0) {
             neighbors[a as usize / 3][a as usize % 3] = b;

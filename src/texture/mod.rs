@@ -6,6 +6,7 @@
 mod color;
 mod image;
 mod level;
+mod mapped;
 mod pyramid;
 mod resample;
 mod rows;
@@ -14,9 +15,10 @@ mod wrap;
 
 pub(crate) use color::srgb8_of_four;
 pub use color::{linear_from_srgb, linear_from_srgb8, srgb_from_linear, srgb8_from_linear};
-pub use image::{ColorImage, HeightImage, NormalImage};
+pub use image::{ColorImage, GrayImage, HeightImage, NormalImage};
 pub use level::{FULL, Level, Texel};
 pub(crate) use level::{FULL_F32, unpack_normals};
+pub use mapped::Texture;
 pub(crate) use pyramid::box_taps;
 pub(crate) use rows::{APRON, FARTHEST, RowStarts, Rows};
 pub use surface::{Surface, SurfaceMaps};

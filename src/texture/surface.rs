@@ -23,6 +23,9 @@ pub struct SurfaceMaps {
     pub relief_depth: f32,
     /// Whether normals are kept: needed for lighting, half as much memory again. Default: `true`.
     pub keep_normals: bool,
+    /// Least texels along u and v: those of a [`Texture`](super::Texture) that light is to be baked
+    /// with, texel by texel. Default: 1, 1.
+    pub least_size: [u32; 2],
 }
 
 impl Default for SurfaceMaps {
@@ -34,6 +37,7 @@ impl Default for SurfaceMaps {
             wrap: Wrap::Repeat,
             relief_depth: 0.05,
             keep_normals: true,
+            least_size: [1; 2],
         }
     }
 }
@@ -219,7 +223,10 @@ fn common_size(maps: &SurfaceMaps) -> Result<[usize; 2]> {
         maps.height.as_ref().map(|m| ("height", m.width, m.height, m.texels.len())),
         maps.normal.as_ref().map(|m| ("normal", m.width, m.height, m.texels.len())),
     ];
-    let mut common = [1, 1];
+    if !maps.least_size.iter().all(|n| (1..=32768).contains(n)) {
+        return refuse("its least size must be within 1 to 32768".into());
+    }
+    let mut common = maps.least_size.map(|n| n as usize);
     for (name, width, height, num_texels) in sizes.into_iter().flatten() {
         let (w, h) = (width as usize, height as usize);
         if !(1..=32768).contains(&w) || !(1..=32768).contains(&h) || w * h != num_texels {

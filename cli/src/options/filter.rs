@@ -62,8 +62,8 @@ pub(crate) struct FilterOptions {
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
     /// How finely --filter horizon and ewa cut a pixel's footprint: fast (4), best (24), or 2 to 64.
-    /// For horizon, two lines for three of these, on a mip level with at most twice as many texels
-    /// across [default: 12]
+    /// For horizon, two lines for three of these, on a mip level with at most 2 to 2.75 times as
+    /// many texels across [default: 12]
     #[arg(long, value_name = "N", value_parser = values::lines)]
     lines: Option<u32>,
     /// Whether --filter horizon keeps tables for distant surfaces [default: on]

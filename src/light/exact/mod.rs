@@ -20,6 +20,7 @@
 
 mod between;
 mod ceiling;
+mod holes;
 mod occluders;
 mod sequence;
 
@@ -32,7 +33,7 @@ use super::reflection::{self, Fresnel, LEAST_COSINE};
 use super::surface_point::SurfacePoint;
 use crate::relief::{Climb, HeightField};
 use crate::scene::angle::cos_sin;
-use crate::scene::{Light, Material, Scene};
+use crate::scene::{Finish, Light, Scene};
 use glam::{DMat3, DVec3, Vec3};
 
 /// What rounding takes from a position, as a share of its numbers: they went through f32 planes.
@@ -52,8 +53,8 @@ pub struct ExactLight<'a> {
 pub struct Hit<'a> {
     /// The polygon where the ray passed it.
     pub point: SurfacePoint,
-    /// What it is made of.
-    pub material: &'a Material,
+    /// What it does with light.
+    pub finish: Finish,
     /// Where it is on the texture, and what is there.
     pub spot: Spot<'a>,
 }
@@ -93,23 +94,23 @@ impl ExactLight<'_> {
     pub fn shade(&self, hit: &Hit, sequence: &Sequence, i: u32) -> Vec3 {
         let ground = Ground::new(*self, hit);
         let [mirror, other] = sequence.points(i);
-        let (material, to_eye) = (hit.material, ground.to_eye);
-        let alpha = reflection::alpha(material.roughness);
-        let fresnel = Fresnel::new(material, hit.spot.albedo);
+        let (finish, to_eye) = (&hit.finish, ground.to_eye);
+        let alpha = reflection::alpha(finish.roughness);
+        let fresnel = Fresnel::new(finish, hit.spot.albedo);
         // Draw what is reflected to the eye.
         let frame = frame_around(ground.normal);
         let local_eye = frame.transpose() * to_eye;
         let (reflected, v_h, shown) = reflection::reflected(f64::from(alpha), local_eye, mirror);
         let shown = shown as f32;
-        let mut sum = material.emissive;
+        let mut sum = finish.emissive;
         if shown > 0.0 {
-            let sky = ground.sky(frame * reflected);
+            let sky = ground.sky(frame * reflected) * finish.occlusion;
             sum += fresnel.at(v_h as f32) * shown * sky;
         }
-        let kept = 1.0 - Fresnel::of_dielectric(material).at(v_h as f32).x * shown;
-        let diffuse = hit.spot.albedo * (kept * (1.0 - material.metallic));
+        let kept = 1.0 - Fresnel::of_dielectric(finish).at(v_h as f32).x * shown;
+        let diffuse = hit.spot.albedo * (kept * (1.0 - finish.metallic));
         // One direction of the sky around the normal, as dense as its cosine.
-        sum += diffuse * ground.sky(frame * cosine_direction(other));
+        sum += diffuse * ground.sky(frame * cosine_direction(other)) * finish.occlusion;
         for light in &self.scene.lights {
             let (to_light, distance, intensity) = ground.towards(light, other);
             let n_l = to_light.dot(ground.normal) as f32;

@@ -48,6 +48,10 @@ pub(super) struct MtlMaterial {
     pub(super) roughness: Option<f32>,
     /// `Ke`.
     pub(super) emissive: Option<[f32; 3]>,
+    /// `d`: 1 is opaque.
+    pub(super) opacity: Option<f32>,
+    /// `map_d`.
+    pub(super) opacity_map: Option<TextureRef>,
     /// `map_Kd`.
     pub(super) albedo: Option<TextureRef>,
     /// `disp`, `map_disp`.
@@ -56,6 +60,12 @@ pub(super) struct MtlMaterial {
     pub(super) bump: Option<TextureRef>,
     /// `norm`, `map_Kn`.
     pub(super) normal: Option<TextureRef>,
+    /// `map_Pm`, of metal.
+    pub(super) metallic_map: Option<TextureRef>,
+    /// `map_Pr`, of roughness.
+    pub(super) roughness_map: Option<TextureRef>,
+    /// `map_Ke`, of emission.
+    pub(super) emissive_map: Option<TextureRef>,
 }
 
 /// All MTL files that an OBJ names.
@@ -194,10 +204,15 @@ impl MtlFiles {
             metallic: number("Pm"),
             roughness: number("Pr"),
             emissive: from.emissive,
+            opacity: from.dissolve,
+            opacity_map: texture("map_d", from.dissolve_texture.as_ref())?,
             albedo: texture("map_Kd", from.diffuse_texture.as_ref())?,
             height: texture("disp", unknown("disp"))?,
             bump: texture("map_Bump", from.normal_texture.as_ref())?,
             normal: texture("norm", unknown("norm"))?,
+            metallic_map: texture("map_Pm", unknown("map_Pm"))?,
+            roughness_map: texture("map_Pr", unknown("map_Pr"))?,
+            emissive_map: texture("map_Ke", unknown("map_Ke"))?,
         })
     }
 
@@ -209,7 +224,8 @@ impl MtlFiles {
         path: &Arc<Path>,
     ) -> Result<TextureRef> {
         let mut texture = TextureLine::parse(text).map_err(|reason| at.refuse(reason))?;
-        if keyword != "disp" && keyword != "map_Bump" && texture.range != [0.0, 1.0] {
+        let is_gray = ["disp", "map_Bump", "map_Pm", "map_Pr"].contains(&keyword);
+        if !is_gray && texture.range != [0.0, 1.0] {
             texture.unsupported.push("-mm".into());
         }
         for option in &texture.unsupported {

@@ -1,0 +1,63 @@
+//! Triangles of one material.
+
+use crate::arguments::{places, points, refused, triangles};
+use crate::material::Material;
+use pyo3::prelude::*;
+
+/// Triangles of one material.
+///
+/// Mesh(vertices, faces, uv=None, normals=None, material=None, name="")
+///
+/// vertices: (N, 3) numbers, world units.
+/// faces: (M, 3) whole numbers, indices of vertices, counter-clockwise seen from the front.
+/// uv: (N, 2), texture coordinates in repeats, v upwards. Without them the material's plain colour
+///     is drawn.
+/// normals: (N, 3), unit vectors; made from the faces where there are none.
+/// material: a Material; without one it is white.
+#[pyclass(frozen, module = "basrelief")]
+#[derive(Debug)]
+pub(crate) struct Mesh {
+    pub(crate) mesh: basrelief::Mesh,
+    pub(crate) material: Option<Py<Material>>,
+}
+
+#[pymethods]
+impl Mesh {
+    #[new]
+    #[pyo3(signature = (vertices, faces, uv = None, normals = None, material = None, name = ""))]
+    fn new(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        uv: Option<&Bound<'_, PyAny>>,
+        normals: Option<&Bound<'_, PyAny>>,
+        material: Option<Py<Material>>,
+        name: &str,
+    ) -> PyResult<Self> {
+        let positions = points(vertices, "vertices")?;
+        let num = positions.len();
+        let triangles = triangles(faces, "faces", num)?;
+        let tex_coords = uv.map_or(Ok(Vec::new()), |uv| places(uv, "uv"))?;
+        let normals = normals.map_or(Ok(Vec::new()), |normals| points(normals, "normals"))?;
+        for (name, len) in [("uv", tex_coords.len()), ("normals", normals.len())] {
+            if ![0, num].contains(&len) {
+                return Err(refused(name, format!("has {len} rows for {num} vertices")));
+            }
+        }
+        let mut mesh =
+            py.detach(|| basrelief::Mesh::new(positions, tex_coords, normals, triangles));
+        mesh.name = name.into();
+        Ok(Self { mesh, material })
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.mesh.name
+    }
+
+    fn __repr__(&self) -> String {
+        let [num_vertices, num_faces] = [self.mesh.positions.len(), self.mesh.triangles.len()];
+        let name = self.mesh.name.escape_debug();
+        format!("<Mesh \"{name}\", {num_vertices} vertices, {num_faces} faces>")
+    }
+}

@@ -1,0 +1,186 @@
+//! All that is drawn.
+
+use crate::arguments::{color, exception, mistyped, refused, tuple};
+use crate::camera::Camera;
+use crate::lights::{Environment, PointLight, Sky, Sun};
+use crate::mesh::Mesh;
+use basrelief::Light;
+use glam::Vec3;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use std::sync::Arc;
+
+/// All that is drawn: meshes, lights, a sky, a background, and a camera to begin with. It does not
+/// change; a Renderer moves what moves.
+///
+/// Scene(meshes, lights=(), sky=None, background=None, camera=None)
+///
+/// meshes: a sequence of Mesh; their order gives the numbers of the layer "object", that of their
+///     materials, as they first come, those of "material".
+/// lights: a sequence of Sun and PointLight.
+/// sky: Sky, Environment or None.
+/// background: linear red, green, blue and opacity where nothing is hit; None is transparent.
+/// camera: a Camera; None frames all meshes in a square picture.
+#[pyclass(frozen, module = "basrelief")]
+#[derive(Debug)]
+pub(crate) struct Scene {
+    pub(crate) scene: Arc<basrelief::Scene>,
+    pub(crate) remarks: [Vec<String>; 2],
+}
+
+/// The built-in scene: an arch of hewn stone on a cobbled street, in the sun.
+#[pyfunction]
+pub(crate) fn builtin() -> Scene {
+    Scene { scene: Arc::new(basrelief::scene::builtin()), remarks: Default::default() }
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    #[pyo3(signature = (meshes, lights = None, sky = None, background = None, camera = None))]
+    fn new(
+        meshes: Vec<Py<Mesh>>,
+        lights: Option<Vec<Bound<'_, PyAny>>>,
+        sky: Option<&Bound<'_, PyAny>>,
+        background: Option<&Bound<'_, PyAny>>,
+        camera: Option<Camera>,
+    ) -> PyResult<Self> {
+        let mut scene = basrelief::Scene::default();
+        let mut known: Vec<Option<usize>> = Vec::new();
+        for mesh in &meshes {
+            let Mesh { mesh, material } = mesh.get();
+            // Materials are told apart by address, as Python does.
+            let address = material.as_ref().map(|material| material.as_ptr() as usize);
+            let index = known.iter().position(|other| *other == address).unwrap_or(known.len());
+            if index == known.len() {
+                known.push(address);
+                let plain = basrelief::Material { name: "none".into(), ..Default::default() };
+                let own = material.as_ref().map(|material| material.get().0.clone());
+                scene.materials.push(own.unwrap_or(plain));
+            }
+            scene.meshes.push(basrelief::Mesh { material: index, ..mesh.clone() });
+        }
+        scene.lights = lights.unwrap_or_default().iter().map(light).collect::<PyResult<_>>()?;
+        scene.sky = sky.map_or(Ok(basrelief::Sky::default()), any_sky)?;
+        scene.background = background.map_or(Ok([0.0; 4]), background_of)?;
+        scene.camera = match camera {
+            Some(camera) => camera.0,
+            None => framing(&scene, 1.0)?,
+        };
+        scene.validate().map_err(exception)?;
+        Ok(Self { scene: Arc::new(scene), remarks: Default::default() })
+    }
+
+    /// The camera to begin with.
+    #[getter]
+    fn camera(&self) -> Camera {
+        Camera(self.scene.camera)
+    }
+
+    /// A camera that sees all meshes in a picture `aspect` times as wide as high, and in wider
+    /// ones.
+    #[pyo3(signature = (aspect = 1.0))]
+    fn framing(&self, aspect: f32) -> PyResult<Camera> {
+        framing(&self.scene, aspect).map(Camera)
+    }
+
+    /// The least and the most of all vertices, three numbers each, in world units; None without
+    /// vertices.
+    #[getter]
+    fn bounds<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<(Bound<'py, PyTuple>, Bound<'py, PyTuple>)>> {
+        let bounds = bounds(&self.scene);
+        bounds.map(|[least, most]| Ok((tuple(py, least)?, tuple(py, most)?))).transpose()
+    }
+
+    /// Names of the meshes: the layer "object" has their places in this list.
+    #[getter]
+    fn objects(&self) -> Vec<&str> {
+        self.scene.meshes.iter().map(|mesh| mesh.name.as_str()).collect()
+    }
+
+    /// Names of the materials: the layer "material" has their places in this list.
+    #[getter]
+    fn materials(&self) -> Vec<&str> {
+        self.scene.materials.iter().map(|material| material.name.as_str()).collect()
+    }
+
+    /// What was not supported or missing when it was loaded: one line each.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.remarks[0].clone()
+    }
+
+    /// What was chosen when it was loaded, such as which image serves as the height map.
+    #[getter]
+    fn choices(&self) -> Vec<String> {
+        self.remarks[1].clone()
+    }
+
+    /// The scene with other lights, sky, background or camera; what is not given stays. Meshes and
+    /// surfaces are shared.
+    #[pyo3(signature = (*, lights = None, sky = None, background = None, camera = None))]
+    fn replace(
+        &self,
+        lights: Option<Vec<Bound<'_, PyAny>>>,
+        sky: Option<&Bound<'_, PyAny>>,
+        background: Option<&Bound<'_, PyAny>>,
+        camera: Option<Camera>,
+    ) -> PyResult<Self> {
+        let mut scene = (*self.scene).clone();
+        if let Some(lights) = lights {
+            scene.lights = lights.iter().map(light).collect::<PyResult<_>>()?;
+        }
+        scene.sky = sky.map_or(Ok(scene.sky), any_sky)?;
+        scene.background = background.map_or(Ok(scene.background), background_of)?;
+        scene.camera = camera.map_or(scene.camera, |camera| camera.0);
+        scene.validate().map_err(exception)?;
+        Ok(Self { scene: Arc::new(scene), remarks: self.remarks.clone() })
+    }
+
+    fn __repr__(&self) -> String {
+        let scene = &self.scene;
+        let num: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        let [num_meshes, num_materials] = [scene.meshes.len(), scene.materials.len()];
+        format!("<Scene of {num_meshes} meshes, {num_materials} materials, {num} triangles>")
+    }
+}
+
+fn bounds(scene: &basrelief::Scene) -> Option<[Vec3; 2]> {
+    let points = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
+    points.map(|p| [*p, *p]).reduce(|[least, most], [p, _]| [least.min(p), most.max(p)])
+}
+
+fn framing(scene: &basrelief::Scene, aspect: f32) -> PyResult<basrelief::Camera> {
+    if !(aspect > 0.0 && aspect.is_finite()) {
+        return Err(refused("aspect", "must be above 0"));
+    }
+    let all = bounds(scene).map(|[least, most]| basrelief::Camera::framing(least, most, aspect));
+    Ok(all.unwrap_or_default())
+}
+
+fn light(arg: &Bound<'_, PyAny>) -> PyResult<Light> {
+    if let Ok(sun) = arg.cast::<Sun>() {
+        return Ok(sun.get().0);
+    }
+    let point = arg.cast::<PointLight>();
+    point.map(|point| point.get().0).map_err(|_| mistyped("lights", "must be Sun or PointLight"))
+}
+
+fn any_sky(arg: &Bound<'_, PyAny>) -> PyResult<basrelief::Sky> {
+    if let Ok(sky) = arg.cast::<Sky>() {
+        return Ok(sky.get().0.clone());
+    }
+    if let Ok(picture) = arg.cast::<Environment>() {
+        return Ok(basrelief::Sky::Environment(picture.get().0.clone()));
+    }
+    let gray = color(arg, "sky").map_err(|_| mistyped("sky", "must be Sky or Environment"))?;
+    Ok(basrelief::Sky::Color(gray))
+}
+
+fn background_of(arg: &Bound<'_, PyAny>) -> PyResult<[f32; 4]> {
+    arg.extract::<[f32; 4]>()
+        .map_err(|_| mistyped("background", "must be four numbers: linear rgb and opacity"))
+}
