@@ -6,7 +6,7 @@ use super::place::write_place;
 use super::values::{Band, Layers, ValuesMut};
 use crate::geometry::Projection;
 use crate::raster::{CenterRow, Drawn, Follow};
-use crate::render::{Outlines, Passages, Renderer};
+use crate::render::{Passages, Renderer};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::simd::set_bits;
@@ -47,8 +47,8 @@ impl Renderer {
         geometry.project(scene, &settings);
         let projection = *geometry.projection();
         // What names and polygons are of is seen past outlines, too.
-        let outlines =
-            asked.has_outlines().then(|| Outlines::new(scene, prepared, &projection)).flatten();
+        let outlines = prepared.outlines(scene, asked, &projection);
+        let outlines = outlines.as_ref();
         let passages = Passages::new(scene, &projection, outlines);
         let follow = passages.as_ref().map(|passages| passages as &dyn Follow);
         let hits = Hits { scene, prepared, is_traced, outlines, projection: &projection };

@@ -21,7 +21,7 @@ pub(super) struct Hits<'a> {
     /// Whether relief is traced.
     pub(super) is_traced: bool,
     /// Where rays end on curved meshes.
-    pub(super) outlines: Option<Outlines<'a>>,
+    pub(super) outlines: Option<&'a Outlines<'a>>,
     pub(super) projection: &'a Projection,
 }
 
@@ -72,7 +72,7 @@ impl Hits<'_> {
             );
             if let Some(field) = field {
                 trace(&block, field, &mut hits);
-                if let Some(outlines) = &self.outlines {
+                if let Some(outlines) = self.outlines {
                     follow(&block, outlines, &mut hits);
                 }
             }

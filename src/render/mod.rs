@@ -229,10 +229,8 @@ impl Renderer {
         // Called for each triangle that is seen: only where that makes a difference.
         let group = |triangle| prepared.group(scene, triangle);
         let group = prepared.is_baked().then_some(&group as &(dyn Fn(_) -> _ + Sync));
-        let outlines = settings
-            .has_outlines()
-            .then(|| Outlines::new(scene, prepared, geometry.projection()))
-            .flatten();
+        let outlines = prepared.outlines(scene, settings, geometry.projection());
+        let outlines = outlines.as_ref();
         let shader = Shader::new(scene, settings, prepared, outlines, pool);
         let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
         let passages = Passages::new(scene, geometry.projection(), outlines);

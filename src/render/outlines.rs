@@ -3,38 +3,39 @@
 use crate::geometry::Projection;
 use crate::light::SurfacePoint;
 use crate::raster::{Behind, Follow};
-use crate::render::PreparedScene;
+use crate::relief::HeightField;
 use crate::scene::Scene;
 use crate::shell::{Met, ReliefHit, Shell, ViewRay, is_seen_from_behind};
 use crate::simd::{PixelLanes, set_bits};
 use glam::{DVec3, Vec3};
 
 /// Follows rays behind the polygons of a frame.
-#[derive(Clone, Copy)]
 pub(crate) struct Outlines<'a> {
     scene: &'a Scene,
-    prepared: &'a PreparedScene,
     projection: &'a Projection,
-    shells: &'a [Option<Shell>],
+    /// Of each mesh that has any.
+    reliefs: Vec<Option<Relief<'a>>>,
 }
 
+/// The relief of a mesh.
+pub(super) type Relief<'a> = (&'a Shell, &'a HeightField);
+
 impl<'a> Outlines<'a> {
-    /// Of a scene with its projection; `None` where each ray meets the surface of the polygon that
-    /// it sees.
-    pub(crate) fn new(
+    /// Of a scene with its projection and the reliefs of its meshes; `None` where each ray meets the
+    /// surface of the polygon that it sees.
+    pub(super) fn new(
         scene: &'a Scene,
-        prepared: &'a PreparedScene,
         projection: &'a Projection,
+        reliefs: Vec<Option<Relief<'a>>>,
     ) -> Option<Self> {
-        let shells = prepared.shells(scene);
-        let has_any = |shell: &Shell| scene.meshes.len() > 1 || shell.is_curved();
-        let is_asked = shells.iter().flatten().any(has_any);
-        is_asked.then_some(Self { scene, prepared, projection, shells })
+        let is_asked = |(shell, _): &Relief| scene.meshes.len() > 1 || shell.is_curved();
+        let has_any = reliefs.iter().flatten().any(is_asked);
+        has_any.then_some(Self { scene, projection, reliefs })
     }
 
     /// Whether a mesh has a relief that is curved: followed rays then find what straight ones do not.
     pub(crate) fn is_curved(&self, mesh: u32) -> bool {
-        self.shells[mesh as usize].as_ref().is_some_and(Shell::is_curved)
+        self.reliefs[mesh as usize].is_some_and(|(shell, _)| shell.is_curved())
     }
 
     /// The relief that rays through places of the screen hit behind a triangle of a mesh with relief,
@@ -80,10 +81,8 @@ impl<'a> Outlines<'a> {
     }
 
     fn walk<const PROBES: bool>(&self, [mesh, triangle]: [u32; 2], place: [f64; 2]) -> Met {
-        let shell = self.shells[mesh as usize].as_ref();
+        let Some((shell, field)) = self.reliefs[mesh as usize] else { return Met::Polygon };
         let mesh = &self.scene.meshes[mesh as usize];
-        let field = || self.prepared.of_material(mesh.material, true)?.field();
-        let Some((shell, field)) = shell.zip(field()) else { return Met::Polygon };
         let eye = self.scene.camera.eye.as_dvec3();
         let ray = ViewRay { eye, direction: self.projection.direction(place) };
         if PROBES {
@@ -96,11 +95,11 @@ impl<'a> Outlines<'a> {
 
 impl Follow for Outlines<'_> {
     fn has_relief(&self, mesh: u32) -> bool {
-        self.shells[mesh as usize].is_some()
+        self.reliefs[mesh as usize].is_some()
     }
 
     fn may_be_passed(&self, [mesh, triangle]: [u32; 2]) -> bool {
-        self.shells[mesh as usize].as_ref().is_some_and(|shell| {
+        self.reliefs[mesh as usize].is_some_and(|(shell, _)| {
             let mesh = &self.scene.meshes[mesh as usize];
             shell.may_be_passed(mesh, triangle, self.scene.camera.eye)
         })
@@ -112,10 +111,10 @@ impl Follow for Outlines<'_> {
 
     fn deepest(&self, [mesh, triangle]: [u32; 2]) -> [Vec3; 3] {
         let eye = self.scene.camera.eye;
-        let shell = self.shells[mesh as usize].as_ref();
+        let relief = self.reliefs[mesh as usize];
         let mesh = &self.scene.meshes[mesh as usize];
-        let corners = match shell {
-            Some(shell) => shell.deepest(mesh, triangle, eye),
+        let corners = match relief {
+            Some((shell, _)) => shell.deepest(mesh, triangle, eye),
             None => mesh.triangles[triangle as usize].map(|i| mesh.positions[i as usize]),
         };
         corners.map(|corner| self.projection.view(corner))

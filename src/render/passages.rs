@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3, Vec3};
 pub(crate) struct Passages<'a> {
     scene: &'a Scene,
     projection: &'a Projection,
-    outlines: Option<Outlines<'a>>,
+    outlines: Option<&'a Outlines<'a>>,
 }
 
 impl<'a> Passages<'a> {
@@ -20,7 +20,7 @@ impl<'a> Passages<'a> {
     pub(crate) fn new(
         scene: &'a Scene,
         projection: &'a Projection,
-        outlines: Option<Outlines<'a>>,
+        outlines: Option<&'a Outlines<'a>>,
     ) -> Option<Self> {
         let all = Self { scene, projection, outlines };
         let has_holes = scene.meshes.iter().any(|mesh| all.cut_out(mesh).is_some());

@@ -3,11 +3,14 @@
 use super::baked::Baked;
 use super::ground::{Ground, Swept};
 use super::mapped::Mapped;
+use super::outlines::Outlines;
 use super::skies::Skies;
 use crate::filter::Prepared;
+use crate::geometry::Projection;
 use crate::light::Disc;
 use crate::light::exact::{Ceiling, Occluders};
 use crate::light::reflection::Reflectance;
+use crate::relief::HeightField;
 use crate::scene::{Light, Material, Mesh, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::shell::Shell;
@@ -180,15 +183,36 @@ impl PreparedScene {
     }
 
     /// The relief of each mesh that has one.
-    pub(crate) fn shells(&self, scene: &Scene) -> &[Option<Shell>] {
+    fn shells(&self, scene: &Scene) -> &[Option<Shell>] {
         self.shells.get_or_init(|| {
             let shell = |mesh: &Mesh| {
-                let field = self.of_material(mesh.material, true)?.field()?;
+                let field = self.field_of(mesh)?;
                 let is_textured = !mesh.tex_coords.is_empty();
                 is_textured.then(|| Shell::new(mesh, field.relief_depth))
             };
             scene.meshes.par_iter().map(shell).collect()
         })
+    }
+
+    /// What follows rays through the reliefs of a scene, if settings ask for it and any may differ
+    /// from its polygons.
+    pub(crate) fn outlines<'a>(
+        &'a self,
+        scene: &'a Scene,
+        settings: &Settings,
+        projection: &'a Projection,
+    ) -> Option<Outlines<'a>> {
+        if !settings.has_outlines() {
+            return None;
+        }
+        let meshes = scene.meshes.iter().zip(self.shells(scene));
+        let relief =
+            |(mesh, shell): (_, &'a Option<Shell>)| shell.as_ref().zip(self.field_of(mesh));
+        Outlines::new(scene, projection, meshes.map(relief).collect())
+    }
+
+    fn field_of(&self, mesh: &Mesh) -> Option<&HeightField> {
+        self.of_material(mesh.material, true)?.field()
     }
 
     /// Whether any light is a point.

@@ -41,7 +41,7 @@ pub(crate) struct Shader<'a> {
     /// What lights each sample by itself, where that is asked for.
     exact: Option<ExactLight<'a>>,
     /// Where rays end on curved meshes; `None` where all reliefs are taken for flat.
-    outlines: Option<Outlines<'a>>,
+    outlines: Option<&'a Outlines<'a>>,
     /// Whether any mesh has colours of its own.
     has_tints: bool,
     pool: &'a Pool<ShadeScratch>,
@@ -62,7 +62,7 @@ impl<'a> Shader<'a> {
         scene: &'a Scene,
         settings: &'a Settings,
         prepared: &'a PreparedScene,
-        outlines: Option<Outlines<'a>>,
+        outlines: Option<&'a Outlines<'a>>,
         pool: &'a Pool<ShadeScratch>,
     ) -> Self {
         let traits = settings.filter.traits();
@@ -100,7 +100,7 @@ impl<'a> Shader<'a> {
         let mut scratch = self.pool.take();
         if let (Some(samples), Some(light)) = (&self.samples, &self.exact) {
             let (filter, is_traced) = (&self.settings.filter, self.traits.rule.is_traced);
-            let outlines = self.outlines.as_ref();
+            let outlines = self.outlines;
             let exact = Exact { light, samples, filter, is_traced, material, ground, outlines };
             return colors.extend(block.pairs().map(|pair| {
                 let mut color = [exact.colors(&pair, &mut scratch.filter)];
@@ -345,7 +345,7 @@ impl<'a> Shader<'a> {
             Footprints::of_quads(&pair.uv, &none, None, &FootprintRule::FLAT, pair.covered_bits());
         // Only the truth follows rays over curved surfaces; to others all is flat.
         let is_exact = self.traits.samples.is_some_and(|samples| samples.is_exact);
-        let outlines = self.outlines.as_ref().filter(|_| is_exact);
+        let outlines = self.outlines.filter(|_| is_exact);
         for lane in pair.covered() {
             let [center_x, center_y] = pixel_center(pair, lane);
             for &([dx, dy], num_samples) in groups {
