@@ -386,6 +386,24 @@ fn textures_of_numbers_are_channels_of_images() {
 }
 
 #[test]
+fn textures_that_lie_elsewhere_are_left_out() {
+    let mut binary = Binary::square();
+    let view = binary.view(png(RgbImage::new(2, 2)));
+    let rest = format!(r#","textures":[{{"source":0}}],"images":[{{"bufferView":{view}}}]"#);
+    let material = r#"{"name":"m","pbrMetallicRoughness":{"baseColorTexture":{"index":0},
+        "metallicRoughnessTexture":{"index":0,"texCoord":1}},
+        "occlusionTexture":{"index":0,"texCoord":1},
+        "emissiveTexture":{"index":0},"emissiveFactor":[1,1,1]}"#;
+    let loaded = loaded(&binary.glb(&square(material, &rest)));
+    let found = &loaded.scene.materials[0];
+    assert!(found.maps.occlusion.is_none() && found.maps.metallic.is_none());
+    assert!(found.maps.emissive.is_some() && found.metallic == 0.0);
+    let [metal, occlusion] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
+    assert!(metal.contains("its metal and roughness texture lies elsewhere"), "{metal}");
+    assert!(occlusion.contains("its occlusion texture lies elsewhere"), "{occlusion}");
+}
+
+#[test]
 fn colours_of_vertices_multiply_the_base_colour() {
     let mut binary = Binary::square();
     let colors = [255, 0, 0, 9, 255, 0, 0, 9, 0, 0, 255, 9, 0, 0, 255, 9];

@@ -153,26 +153,38 @@ impl GltfMaterial {
         }
     }
 
-    /// Where all its textures are read: one set of coordinates serves all.
+    /// Where all its textures are read, as the first of them is: one set of coordinates serves all.
     pub(super) fn placement(&self) -> Placement {
-        self.textures().next().map_or(Placement::default(), |(_, texture)| texture.placement)
+        let Self { albedo, normal, metal_rough, emissive, occlusion, .. } = self;
+        let all = [albedo, normal, metal_rough, emissive, occlusion];
+        let first = all.into_iter().flatten().next();
+        first.map_or(Placement::default(), |texture| texture.placement)
     }
 
-    /// The textures that are read, by what they serve as.
-    fn textures(&self) -> impl Iterator<Item = (&'static str, &TextureRef)> {
-        let height = match &self.height {
-            Some(Height::Texture(texture)) => Some(texture),
-            _ => None,
-        };
-        let all = [
-            ("colour", &self.albedo),
-            ("normal", &self.normal),
-            ("metal and roughness", &self.metal_rough),
-            ("emission", &self.emissive),
-            ("occlusion", &self.occlusion),
-        ]
-        .map(|(n, t)| (n, t.as_ref()));
-        all.into_iter().chain([("height", height)]).filter_map(|(name, t)| Some((name, t?)))
+    /// Leaves out textures that lie elsewhere than the first, and says which: where that lies they
+    /// would show what is meant for another place.
+    fn drop_elsewhere(&mut self) -> Vec<&'static str> {
+        let placement = self.placement();
+        let is_elsewhere = |texture: &mut TextureRef| texture.placement != placement;
+        let Self { normal, metal_rough, emissive, occlusion, plain, .. } = self;
+        let mut dropped = Vec::new();
+        if normal.take_if(is_elsewhere).is_some() {
+            dropped.push("normal");
+        }
+        if metal_rough.take_if(is_elsewhere).is_some() {
+            // Its number alone would make all of it a metal.
+            plain.metallic = 0.0;
+            dropped.push("metal and roughness");
+        }
+        if emissive.take_if(is_elsewhere).is_some() {
+            // All of it would glow.
+            plain.emissive = Vec3::ZERO;
+            dropped.push("emission");
+        }
+        if occlusion.take_if(is_elsewhere).is_some() {
+            dropped.push("occlusion");
+        }
+        dropped
     }
 }
 
@@ -222,10 +234,10 @@ impl Document {
                     "material '{name}' is not blended; drawn where its opacity is at least {CUT}"
                 ));
             }
-            let placement = material.placement();
-            for (kind, _) in material.textures().filter(|(_, t)| t.placement != placement) {
+            for kind in material.drop_elsewhere() {
                 warnings.push(format!(
-                    "material '{name}': its {kind} texture lies elsewhere; drawn where the first does"
+                    "material '{name}': its {kind} texture lies elsewhere than its first; \
+                     drawn without it"
                 ));
             }
             materials.push(material);
