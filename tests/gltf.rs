@@ -2,9 +2,9 @@
 
 use basrelief::load::{LoadOptions, Loaded, MaterialOptions, load, load_gltf_bytes};
 use basrelief::texture::{Texture, Wrap};
-use basrelief::{Error, Light};
+use basrelief::{Camera, Error, Light, Settings, render};
 use glam::{Vec2, Vec3};
-use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage};
+use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage, Rgba, RgbaImage};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -386,6 +386,57 @@ fn textures_of_numbers_are_channels_of_images() {
 }
 
 #[test]
+fn colours_of_vertices_multiply_the_base_colour() {
+    let mut binary = Binary::square();
+    let colors = [255, 0, 0, 9, 255, 0, 0, 9, 0, 0, 255, 9, 0, 0, 255, 9];
+    binary.accessor(colors, 4, r#""componentType":5121,"type":"VEC4","normalized":true"#);
+    let material = r#"{"pbrMetallicRoughness":{"baseColorFactor":[0.5,1,1,1]}}"#;
+    let scene = square(material, "").replace(r#""TEXCOORD_0":1"#, r#""COLOR_0":3"#);
+    let mut scene = loaded(&binary.glb(&scene)).scene;
+    assert_eq!(scene.meshes[0].colors, [Vec3::X, Vec3::X, Vec3::Z, Vec3::Z]);
+    let (eye, target) = (Vec3::new(0.5, 0.5, 2.0), Vec3::new(0.5, 0.5, 0.0));
+    scene.camera = Camera { eye, target, fov_degrees: 28.0, ..Camera::default() };
+    let frame = render(scene, Settings { width: 16, height: 16, ..Settings::default() });
+    let frame = frame.expect("a frame");
+    // Red at the bottom, where it is half as bright, to blue at the top.
+    let [top, middle, bottom] = [0, 7, 15].map(|y| frame.pixels[y * 16 + 8]);
+    assert!(top[0] < 0.05 && top[2] > 0.9 && top[1] == 0.0, "{top:?}");
+    assert!(bottom[0] > 0.45 && bottom[0] <= 0.5 && bottom[2] < 0.05, "{bottom:?}");
+    assert!((middle[2] - 0.53).abs() < 0.02 && (middle[0] - 0.235).abs() < 0.02, "{middle:?}");
+}
+
+#[test]
+fn masks_are_cut_out_and_blended_materials_too() {
+    let mut binary = Binary::square();
+    let half = |x: u32, _| Rgba([9, 9, 9, if x < 2 { 255 } else { 100 }]);
+    let view = binary.view(png(RgbaImage::from_fn(4, 4, half)));
+    let rest = format!(r#","textures":[{{"source":0}}],"images":[{{"bufferView":{view}}}]"#);
+    let load = |mode: &str, texture: &str| {
+        let material = format!(
+            r#"{{"name":"m",{mode},"pbrMetallicRoughness":{{{texture}"baseColorFactor":[1,1,1,0.8]}}}}"#
+        );
+        load_gltf_bytes(&binary.glb(&square(&material, &rest)), &LoadOptions::default())
+    };
+    let texture = r#""baseColorTexture":{"index":0},"#;
+    let there = |mode: &str| {
+        let loaded = load(mode, texture).expect("loaded");
+        let material = &loaded.scene.materials[0];
+        // The opaque half, and the other of opacity 0.8 * 100 / 255.
+        let holes = material.cut_out.as_ref();
+        let there = holes.map(|cut| [0.25, 0.75].map(|u| cut.opacity.at([u, 0.5])[0] > 0.5));
+        (there, loaded.warnings.len())
+    };
+    assert_eq!(there(r#""alphaMode":"OPAQUE""#), (None, 0));
+    assert_eq!(there(r#""alphaMode":"MASK""#), (Some([true, false]), 0));
+    assert_eq!(there(r#""alphaMode":"MASK","alphaCutoff":0.9"#), (Some([false, false]), 0));
+    // Nothing is below: no holes.
+    assert_eq!(there(r#""alphaMode":"MASK","alphaCutoff":0.2"#), (None, 0));
+    assert_eq!(there(r#""alphaMode":"BLEND""#), (Some([true, false]), 1));
+    let none = load(r#""alphaMode":"MASK","alphaCutoff":0.9"#, "").expect_err("a refusal");
+    assert!(none.to_string().contains("has no triangles"), "{none}");
+}
+
+#[test]
 fn unlit_materials_send_out_their_colour() {
     let binary = Binary::square();
     let material = r#"{"pbrMetallicRoughness":{"baseColorFactor":[0.5,1,0,1]},
@@ -455,6 +506,12 @@ fn what_is_not_supported_is_refused_or_named() {
     let error = refused(&glb(r#","extensionsRequired":["KHR_draco_mesh_compression"]"#));
     assert!(error.contains("KHR_draco_mesh_compression, which is not supported"), "{error}");
     let warnings = loaded(&glb(r#","extensionsUsed":["KHR_materials_sheen"]"#)).warnings;
+    let still = loaded(&glb(r#","skins":[{"joints":[0]}],"animations":[]"#)).warnings;
+    assert_eq!(still, [""; 0], "no mesh has this skin");
+    let skinned = square("{}", r#","skins":[{"joints":[0]}]"#)
+        .replace(r#"{"mesh":0}"#, r#"{"mesh":0,"skin":0}"#);
+    let still = loaded(&Binary::square().glb(&skinned)).warnings;
+    assert_eq!(still, ["scene.gltf: skins are not supported; meshes stand still"]);
     assert_eq!(
         warnings,
         ["scene.gltf: extension KHR_materials_sheen is not supported; drawn without it"]
@@ -491,6 +548,15 @@ fn broken_files_are_refused_by_one_line_that_says_where() {
         let error = changed(from, to);
         assert!(error.contains(expected), "{to}: {error}");
     }
+    let load = |text: &str| refused(text.as_bytes());
+    assert!(load(r#"{"buffers":{"a":{}}}"#).contains("is glTF 1; only glTF 2"));
+    assert!(load(r#"{"asset":{"version":"1.1"}}"#).contains("is glTF 1.1; only glTF 2"));
+    assert!(load(r#"{"asset":{"version":"2.0"},"#).contains("is no valid glTF: EOF"));
+    let mut old = whole.clone();
+    old[4] = 1;
+    assert!(refused(&old).contains("GLB of version 1"));
+    // Animations are not played; what is wrong with them does not matter.
+    loaded(&Binary::square().glb(&square("{}", r#","animations":[{"channels":5}]"#)));
     let options = LoadOptions { max_triangles: 1, ..LoadOptions::default() };
     let error = load_gltf_bytes(&whole, &options).expect_err("a refusal");
     assert!(error.to_string().contains("max_triangles"), "{error}");

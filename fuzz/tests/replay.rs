@@ -81,6 +81,7 @@ replays! {
     horizon MANY;
     layers MANY;
     load_gltf MANY;
+    outlines MANY;
     load_image MANY;
     load_mtl MANY;
     load_obj MANY;

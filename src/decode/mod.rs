@@ -38,6 +38,11 @@ pub(crate) struct ImageInfo {
 }
 
 impl ImageInfo {
+    /// Whether texels have an opacity.
+    pub(crate) fn has_opacity(&self) -> bool {
+        self.color.has_alpha()
+    }
+
     /// Whether the format has a single channel of light.
     pub(crate) fn is_gray_format(&self) -> bool {
         !self.color.has_color()

@@ -10,6 +10,7 @@ use super::obj::{self, locate};
 use super::options::{LoadOptions, MaterialOptions};
 use super::plan::{Numbers, Plan, Planner};
 use super::stage::{LoadStage, Report};
+use super::surfaces::Built;
 use super::{models, surfaces};
 use crate::decode::open_regular;
 use crate::error::{Error, Result};
@@ -123,8 +124,8 @@ pub(super) fn put_together(model: Model, options: &LoadOptions, report: &Report)
     let surfaces = surfaces::build(&plans, &images, options, report)?;
     let materials = materials.into_iter().map(|(material, plan)| {
         let built = plan.and_then(|plan| surfaces.get(&plan)).cloned();
-        let (surface, maps) = built.map(|built| (built.surface, built.maps)).unzip();
-        Material { surface, maps: maps.unwrap_or_default(), ..material }
+        let Some(Built { surface, maps, cut_out }) = built else { return material };
+        Material { surface: Some(surface), maps, cut_out, ..material }
     });
     let mut scene = Scene { meshes, materials: materials.collect(), ..Scene::default() };
     frame(&mut scene, options.aspect);

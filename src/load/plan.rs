@@ -17,6 +17,9 @@ use std::path::PathBuf;
 /// Relief depth in texture repeats where nothing says otherwise.
 pub(super) const DEFAULT_DEPTH: f32 = 0.05;
 
+/// The opacity at which surfaces are cut out where nothing says otherwise.
+pub(super) const CUT: f32 = 0.5;
+
 /// In the order of plans.
 pub(super) const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
 
@@ -45,12 +48,18 @@ pub(super) enum Kind {
         channel: Option<Channel>,
         range: [u32; 2],
     },
+    /// What is there of a surface: as `Gray`, at and above a threshold.
+    Opacity {
+        channel: Option<Channel>,
+        range: [u32; 2],
+        threshold: u32,
+    },
 }
 
 impl Kind {
     /// Bytes of a texel once it is read.
     pub(super) fn num_bytes(&self) -> u64 {
-        if matches!(self, Self::Height { .. } | Self::Gray { .. }) { 2 } else { 6 }
+        if matches!(self, Self::Color | Self::Normal { .. }) { 6 } else { 2 }
     }
 }
 
@@ -61,13 +70,15 @@ pub(super) struct Numbers {
     pub(super) roughness: Option<Map>,
     pub(super) occlusion: Option<Map>,
     pub(super) emissive: Option<Map>,
+    /// Of cut-outs, which are there without light, too.
+    pub(super) opacity: Option<Map>,
 }
 
 impl Numbers {
     /// Those that there are.
     pub(super) fn all(&self) -> impl Iterator<Item = &Map> {
-        let Self { metallic, roughness, occlusion, emissive } = self;
-        [metallic, roughness, occlusion, emissive].into_iter().flatten()
+        let Self { metallic, roughness, occlusion, emissive, opacity } = self;
+        [metallic, roughness, occlusion, emissive, opacity].into_iter().flatten()
     }
 }
 
@@ -258,10 +269,28 @@ impl<'a> Planner<'a> {
         Ok((found.map(|(_, path)| Map { path, kind: Kind::Color }), is_clamped))
     }
 
-    /// Textures of a material's numbers, which only lighting asks for.
+    /// The opacity of cut-outs: the image's, or its brightness where it has none.
+    fn opacity(&mut self, material: &MtlMaterial) -> Result<Option<Map>> {
+        let name = material.name.escape_debug();
+        let opacity = material.opacity.unwrap_or(1.0).clamp(0.0, 1.0);
+        let Some((line, path)) = self.found(material.opacity_map.as_ref())? else {
+            if opacity < 1.0 {
+                self.warnings.push(format!("material {name}: d {opacity} is drawn opaque"));
+            }
+            return Ok(None);
+        };
+        let has_opacity = decode::probe(&path, self.options.image_limits())?.has_opacity();
+        let channel = line.texture.channel.or(has_opacity.then_some(Channel::Matte));
+        let [base, gain] = line.texture.range.map(|number| number * opacity);
+        let (range, threshold) = ([base, gain].map(f32::to_bits), CUT.to_bits());
+        Ok(Some(Map { path, kind: Kind::Opacity { channel, range, threshold } }))
+    }
+
+    /// Textures of a material's numbers; most are only asked for by lighting.
     fn numbers(&mut self, material: &MtlMaterial) -> Result<Numbers> {
+        let opacity = self.opacity(material)?;
         if !self.options.keep_normals {
-            return Ok(Numbers::default());
+            return Ok(Numbers { opacity, ..Numbers::default() });
         }
         let given = self.given(material).clone();
         let mut of = |given: Option<PathBuf>, line: Option<&TextureRef>, is_gray: bool| {
@@ -279,6 +308,7 @@ impl<'a> Planner<'a> {
             roughness: of(given.roughness_map, material.roughness_map.as_ref(), true)?,
             occlusion: of(given.occlusion_map, None, true)?,
             emissive: of(given.emissive_map, material.emissive_map.as_ref(), false)?,
+            opacity,
         })
     }
 

@@ -10,7 +10,7 @@ use super::plan::{Kind, Map, Numbers, Plan, WRAPS};
 use super::stage::{Counter, LoadStage, Report};
 use crate::decode::{ImageInfo, Samples};
 use crate::error::{Error, Result};
-use crate::scene::MaterialMaps;
+use crate::scene::{CutOut, MaterialMaps};
 use crate::texture::{
     ColorImage, GrayImage, HeightImage, NormalImage, Surface, SurfaceMaps, Texture,
 };
@@ -43,6 +43,7 @@ enum MapImage {
 pub(super) struct Built {
     pub(super) surface: Arc<Surface>,
     pub(super) maps: MaterialMaps,
+    pub(super) cut_out: Option<CutOut>,
 }
 
 /// Textures of materials' numbers; materials share those of one map and index into [`WRAPS`].
@@ -97,7 +98,8 @@ pub(super) fn build(
             let maps = SurfaceMaps { least_size: least_size(plan, &infos), ..maps };
             let surface = Arc::new(Surface::new(maps)?);
             counter.add_one();
-            Ok((plan.clone(), Built { surface, maps: material_maps(plan, &textures) }))
+            let maps = material_maps(plan, &textures);
+            Ok((plan.clone(), Built { surface, maps, cut_out: cut_out(plan, &textures) }))
         });
         // The first refusal in the order of the plans, whichever thread is first.
         let built: Vec<Result<_>> = built.collect();
@@ -116,25 +118,40 @@ fn textures(plans: &BTreeSet<Plan>, images: &mut BTreeMap<Map, MapImage>) -> Res
         .collect();
     let mut textures = Textures::new();
     for (map, wrap) in wanted {
-        let texture = match images.get(&map).cloned() {
-            Some(MapImage::Gray(image)) => Texture::gray(image, WRAPS[wrap])?,
-            Some(MapImage::Color(image)) => Texture::color(image, WRAPS[wrap])?,
+        let texture = match (images.get(&map).cloned(), &map.kind) {
+            (Some(MapImage::Gray(image)), Kind::Opacity { threshold, .. }) => {
+                let threshold = f32::from_bits(*threshold);
+                if image.texels.iter().all(|texel| f32::from(*texel) / 65535.0 >= threshold) {
+                    // Without holes it need not be asked.
+                    continue;
+                }
+                Texture::opacity(image, WRAPS[wrap], threshold)?
+            }
+            (Some(MapImage::Gray(image)), _) => Texture::gray(image, WRAPS[wrap])?,
+            (Some(MapImage::Color(image)), _) => Texture::color(image, WRAPS[wrap])?,
             _ => continue,
         };
         textures.insert((map, wrap), Arc::new(texture));
     }
-    images.retain(|map, _| !matches!(map.kind, Kind::Gray { .. }));
+    images.retain(|map, _| !matches!(map.kind, Kind::Gray { .. } | Kind::Opacity { .. }));
     Ok(textures)
 }
 
 fn material_maps(plan: &Plan, textures: &Textures) -> MaterialMaps {
-    let Numbers { metallic, roughness, occlusion, emissive } = &plan.numbers;
+    let Numbers { metallic, roughness, occlusion, emissive, .. } = &plan.numbers;
     let [metallic, roughness, occlusion, emissive] = [metallic, roughness, occlusion, emissive]
         .map(|map| {
             let key = (map.clone()?, plan.wrap_index());
             textures.get(&key).cloned()
         });
     MaterialMaps { metallic, roughness, occlusion, emissive }
+}
+
+/// The holes of a plan's surface, if it has any.
+fn cut_out(plan: &Plan, textures: &Textures) -> Option<CutOut> {
+    let map = plan.numbers.opacity.as_ref()?;
+    let opacity = textures.get(&(map.clone(), plan.wrap_index())).cloned()?;
+    Some(CutOut { opacity })
 }
 
 /// Texels that a surface must have so that nothing of its textures is lost.
@@ -213,7 +230,7 @@ fn convert(samples: &Samples, kind: &Kind) -> MapImage {
         Kind::Height { channel, range } => {
             MapImage::Height(samples.gray(channel, range.map(f32::from_bits)).into())
         }
-        Kind::Gray { channel, range } => {
+        Kind::Gray { channel, range } | Kind::Opacity { channel, range, .. } => {
             MapImage::Gray(samples.gray(channel, range.map(f32::from_bits)))
         }
         Kind::Normal { strength, is_green_down } => {

@@ -17,16 +17,12 @@
 use super::edge::{Rect, Row};
 use super::grid::bounds;
 use super::tile::{FARTHEST, NONE, VisibilityBuffer, cover};
-use crate::geometry::{Geometry, Plane, ScreenBasis, offset_bounds};
+use crate::geometry::{Geometry, Plane, offset_bounds};
 use crate::simd::{f32x8, set_bits, u32x8};
 use glam::Vec3;
 
 /// Most polygons that a ray is followed through; it then sees what it has met, or nothing.
 const MOST_POLYGONS: usize = 64;
-
-/// How far behind its own polygon relief is looked for, in depths of the relief there: on curved
-/// surfaces rays go deeper than the plane through the deepest corners is.
-const REACH: f32 = 1.5;
 
 /// How much nearer than where a ray left a relief the polygon there may seem, as a share of 1 / w.
 const ROUNDING: f32 = 1e-4;
@@ -60,10 +56,10 @@ pub trait Follow: Sync {
 
 /// Eight samples whose rays are followed.
 #[derive(Clone, Copy, Debug)]
-struct Followed {
+pub(super) struct Followed {
     /// All bits of those that are, and of those of which more is asked.
-    is_followed: u32x8,
-    is_asked: u32x8,
+    pub(super) is_followed: u32x8,
+    pub(super) is_asked: u32x8,
     /// Depth of the polygon that was asked last, and of the next one with its local index.
     last: f32x8,
     next: f32x8,
@@ -83,12 +79,14 @@ struct Followed {
 /// Buffers of following rays, kept between tiles.
 #[derive(Debug, Default)]
 pub(super) struct FollowScratch {
-    samples: Vec<Followed>,
+    pub(super) samples: Vec<Followed>,
     /// Of each triangle of the list: twice its mesh, and one more if it is seen from behind.
     sides: Vec<u32>,
     may_be_passed: Vec<bool>,
     /// Of each triangle of the list, 1 / w of its deepest relief.
-    deepest: Vec<Option<Plane>>,
+    pub(super) deepest: Vec<Option<Plane>>,
+    /// Of each sample, the least 1 / w of the relief that its polygon has, and the mesh.
+    pub(super) reaches: Vec<(f32x8, u32x8)>,
 }
 
 /// What all of a tile is asked with.
@@ -100,7 +98,7 @@ pub(super) struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    fn triangle(&self, local: usize) -> [u32; 2] {
+    pub(super) fn triangle(&self, local: usize) -> [u32; 2] {
         let triangle = self.geometry.triangle(self.list[local]);
         [triangle.mesh, triangle.triangle]
     }
@@ -186,49 +184,6 @@ impl FollowScratch {
         ));
     }
 
-    /// Asks for samples where another mesh's polygon lies no farther than the deepest relief.
-    fn ask_contacts<const S: usize>(&mut self, buffer: &VisibilityBuffer, asked: &Asked) {
-        let Asked { geometry, list, rect, follow } = asked;
-        self.deepest.clear();
-        self.deepest.extend((0..list.len()).map(|local| {
-            let triangle = asked.triangle(local);
-            follow.has_relief(triangle[0]).then(|| {
-                let view = follow.deepest(triangle).map(|corner| corner.as_dvec3().to_array());
-                ScreenBasis::new(view, geometry.projection().center).inverse_w()
-            })
-        }));
-        // The least 1 / w of each sample's relief, and the mesh that it is of.
-        let mut reaches =
-            vec![(f32x8::splat(f32::INFINITY), u32x8::splat(NONE)); self.samples.len()];
-        for (at, (reach, mesh)) in reaches.iter_mut().enumerate() {
-            let (triangles, depth) =
-                (buffer.triangles[at].to_array(), buffer.inverse_w[at].to_array());
-            for lane in 0..8 {
-                let local = triangles[lane] as usize;
-                let Some([a, b, c]) = self.deepest.get(local).copied().flatten() else { continue };
-                let [x, y] = buffer.place::<S>(at, lane).map(|c| c as f32);
-                let deepest = a * x + b * y + c;
-                reach.as_mut_array()[lane] = depth[lane] - (depth[lane] - deepest) * REACH;
-                mesh.as_mut_array()[lane] = asked.triangle(local)[0];
-            }
-        }
-        for local in 0..list.len() {
-            let triangle = geometry.triangle(list[local]);
-            let mesh = u32x8::splat(triangle.mesh);
-            let [dx, dy, constant] = triangle.depth;
-            let samples = &mut self.samples;
-            let around = bounds(triangle, rect, offset_bounds(S as u32));
-            cover::<S>(triangle, &around, &mut |row: Row| {
-                let (at, inverse_w) = buffer.row::<S>(&row, [dx, dy, constant]);
-                let (reach, own) = reaches[at];
-                let is_within = inverse_w.simd_gt(reach).to_bits() & !own.simd_eq(mesh);
-                let is_near = is_within & row.mask.cast_unsigned();
-                samples[at].is_asked |= is_near;
-                samples[at].is_followed |= is_near;
-            });
-        }
-    }
-
     /// Follows the rays of the samples that are asked, each behind its next polygon.
     fn follow_all<const S: usize>(&mut self, buffer: &VisibilityBuffer, asked: &Asked) {
         let (sides, may_be_passed) = (&self.sides, &self.may_be_passed);
@@ -301,7 +256,7 @@ impl FollowScratch {
         let mut is_any_left = false;
         for samples in &mut self.samples {
             let is_left = !samples.triangle.simd_eq(u32x8::splat(NONE));
-            samples.is_asked = samples.is_asked & is_left;
+            samples.is_asked &= is_left;
             is_any_left |= samples.is_asked != u32x8::ZERO;
         }
         is_any_left

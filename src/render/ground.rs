@@ -79,7 +79,13 @@ impl Ground<'_> {
         let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
         let (uv, view) = planes.at(x, y);
         let field = self.prepared.field();
-        Footprints::of_samples((&uv, &view), field, is_traced, pixel, covered)
+        let rays = Footprints::of_samples((&uv, &view), field, is_traced, pixel, covered);
+        match field {
+            Some(field) if planes.bend != [0.0; 2] && !is_traced => {
+                rays.bent(&view, &planes.bend.map(PixelLanes::splat), field)
+            }
+            _ => rays,
+        }
     }
 
     /// Where the rays of samples hit the relief of a curved mesh; `None` where it is flat.

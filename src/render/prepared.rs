@@ -82,14 +82,13 @@ impl PreparedScene {
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
         let (reflectance, occluders, ceilings, skies, shells) = Default::default();
-        let (baked, mapped) = (None, None);
         Self {
             surfaces,
             flat,
             has_points: scene.lights.iter().any(|light| matches!(light, Light::Point { .. })),
             of_material,
-            baked,
-            mapped,
+            baked: None,
+            mapped: None,
             reflectance,
             occluders,
             ceilings,

@@ -42,6 +42,8 @@ pub(crate) struct Shader<'a> {
     exact: Option<ExactLight<'a>>,
     /// Where rays end on curved meshes; `None` where all reliefs are taken for flat.
     outlines: Option<Outlines<'a>>,
+    /// Whether any mesh has colours of its own.
+    has_tints: bool,
     pool: &'a Pool<ShadeScratch>,
     num_texels: [AtomicU64; 2],
 }
@@ -68,8 +70,18 @@ impl<'a> Shader<'a> {
             && traits.samples.is_some_and(|samples| samples.is_exact);
         let exact = is_exact.then(|| ExactLight { scene, occluders: prepared.occluders(scene) });
         let samples = traits.samples.map(Samples::offsets);
-        let num_texels = Default::default();
-        Self { scene, settings, prepared, traits, samples, exact, outlines, pool, num_texels }
+        Self {
+            scene,
+            settings,
+            prepared,
+            traits,
+            samples,
+            exact,
+            outlines,
+            has_tints: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty()),
+            pool,
+            num_texels: Default::default(),
+        }
     }
 
     /// What filtering took so far.
@@ -90,14 +102,20 @@ impl<'a> Shader<'a> {
             let (filter, is_traced) = (&self.settings.filter, self.traits.rule.is_traced);
             let outlines = self.outlines.as_ref();
             let exact = Exact { light, samples, filter, is_traced, material, ground, outlines };
-            return colors
-                .extend(block.pairs().map(|pair| exact.colors(&pair, &mut scratch.filter)));
+            return colors.extend(block.pairs().map(|pair| {
+                let mut color = [exact.colors(&pair, &mut scratch.filter)];
+                tint(std::iter::once(pair), &mut color);
+                color[0]
+            }));
         }
         let Some(ground) = ground else {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
         let start = colors.len();
-        let mut hidden = HiddenLights::none(self.scene.lights.len());
+        let num_lights = if ground.is_lit { self.scene.lights.len() } else { 0 };
+        let mut hidden = HiddenLights::none(num_lights);
+        // What only sends out light sends out its colour.
+        let is_glowing = material.base_color == Vec3::ZERO;
         if let Some(swept) = ground.swept {
             let shown = self.hide_on_curved(&ground, block, &mut hidden);
             self.hide_points(&ground, block, &mut hidden);
@@ -116,11 +134,17 @@ impl<'a> Shader<'a> {
                 self.shine(&ground, &hidden, block, &mut scratch, colors);
             }
         }
+        if self.has_tints && !is_glowing {
+            tint(block.pairs(), colors);
+        }
         if ground.baked.is_some() || ground.swept.is_some() {
             self.reflect(&ground, &hidden, block, &mut scratch, colors);
         }
         if let Some(glow) = ground.glow {
             self.glow(&ground, glow, block, &mut scratch, colors);
+        }
+        if self.has_tints && is_glowing {
+            tint(block.pairs(), colors);
         }
     }
 
@@ -163,15 +187,23 @@ impl<'a> Shader<'a> {
     /// Pixels of a material without a texture.
     fn plain(&self, pair: &QuadPair, material: &Material) -> [PixelLanes; 3] {
         let mut colors = [Vec3::ZERO; 8];
+        let tint = pair.tint();
+        let tint = |lane: usize| {
+            tint.map_or(Vec3::ONE, |tint| Vec3::from(tint.map(|c| c.as_array()[lane])))
+        };
         // Helper lanes stay black: nothing adds them to a pixel.
         for lane in pair.covered() {
+            let base = material.base_color * tint(lane);
             colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
                 Some(lights) => {
                     // Nothing bends the normal here: it is z in the surface's own frame.
-                    let finish = material.plain_finish();
-                    self.lit_color(&finish, (material.base_color, false), Vec3::Z, &lights)
+                    let mut finish = material.plain_finish();
+                    if material.base_color == Vec3::ZERO {
+                        finish.emissive *= tint(lane);
+                    }
+                    self.lit_color(&finish, (base, false), Vec3::Z, &lights)
                 }
-                None => material.base_color,
+                None => base,
             };
         }
         in_lanes(&colors)
@@ -239,8 +271,12 @@ impl<'a> Shader<'a> {
         footprints.clear();
         if let Some(field) = field.filter(|_| rule.is_traced) {
             footprints.extend(pairs.map(|index| {
-                let pair = block.pair(index);
-                Footprints::before_hits(&pair.uv, &pair.view(), field, pair.covered_bits())
+                let (pair, view) = (block.pair(index), block.pair(index).view());
+                let pixels = Footprints::before_hits(&pair.uv, &view, field, pair.covered_bits());
+                match pair.bend() {
+                    Some(bend) => pixels.bent(&view, &bend, field),
+                    None => pixels,
+                }
             }));
             return Footprints::find_hits(footprints, field, rule);
         }
@@ -248,7 +284,11 @@ impl<'a> Shader<'a> {
             let pair = block.pair(index);
             // Where there is no relief, the view changes nothing and is not computed.
             let view = if field.is_some() { pair.view() } else { [PixelLanes::ZERO; 3] };
-            Footprints::of_quads(&pair.uv, &view, field, rule, pair.covered_bits())
+            let pixels = Footprints::of_quads(&pair.uv, &view, field, rule, pair.covered_bits());
+            match (pair.bend(), field) {
+                (Some(bend), Some(field)) => pixels.bent(&view, &bend, field),
+                _ => pixels,
+            }
         }));
     }
 
@@ -403,5 +443,14 @@ impl<'a> Shader<'a> {
         let point = self.is_lit().then(|| surface_point(pair.planes[lane / 4], place))??;
         let Scene { camera, lights, sky, .. } = self.scene;
         Some(LocalLights::at(&point, camera.eye, lights, sky))
+    }
+}
+
+/// Multiplies colours by those of the meshes.
+fn tint<'a>(pairs: impl Iterator<Item = QuadPair<'a>>, colors: &mut [[PixelLanes; 3]]) {
+    for (color, pair) in colors.iter_mut().zip(pairs) {
+        if let Some(tint) = pair.tint() {
+            *color = std::array::from_fn(|c| color[c] * tint[c]);
+        }
     }
 }

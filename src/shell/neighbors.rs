@@ -16,7 +16,14 @@ pub(super) fn find(mesh: &Mesh) -> Vec<[u32; 3]> {
         let (i, j) = (edge as usize % 3, (edge as usize + 1) % 3);
         [triangle[i], triangle[j]]
     };
+    // A triangle without area lies between two others, as at the poles of spheres: they are
+    // neighbours.
+    let has_area = |edge: &u32| {
+        let [a, b, c] = mesh.triangles[*edge as usize / 3].map(|i| places[i as usize]);
+        a != b && b != c && c != a
+    };
     let mut edges: Vec<([u32; 2], u32)> = (0..3 * mesh.triangles.len() as u32)
+        .filter(has_area)
         .map(|edge| {
             let [a, b] = ends(edge).map(|i| places[i]);
             ([a.min(b), a.max(b)], edge)

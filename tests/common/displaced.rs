@@ -1,6 +1,8 @@
 //! The relief as real geometry: each triangle cut into many, whose corners are moved down by the
 //! height map. Drawn without any relief, it is what a relief must look like.
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
+use crate::common::floor_scene;
 use basrelief::texture::{ColorImage, FULL, Surface, SurfaceMaps, srgb_from_linear};
 use basrelief::{Camera, Filter, Frame, Layer, Material, Mesh, Renderer, Scene, Settings};
 use glam::{Vec2, Vec3};
@@ -76,6 +78,18 @@ pub fn scene(mesh: Mesh, maps: SurfaceMaps, distance: f32) -> Scene {
         },
         ..Scene::default()
     }
+}
+
+/// A floor of stones from above, with a ball that is sunk half into it.
+pub fn ball_in_stones(maps: SurfaceMaps) -> Scene {
+    let mut scene = floor_scene(Surface::new(maps).expect("valid maps"), 0.5);
+    let mut ball = sphere([48, 24]);
+    ball.positions.iter_mut().for_each(|position| *position *= 0.8);
+    ball.material = 1;
+    scene.meshes.push(ball);
+    scene.materials.push(Material { base_color: Vec3::new(0.8, 0.3, 0.2), ..Default::default() });
+    (scene.camera.eye, scene.camera.target) = (Vec3::new(0.0, 1.5, 2.2), Vec3::ZERO);
+    scene
 }
 
 /// The scene with each triangle of the meshes that have relief cut into `pieces` squared, whose
@@ -251,12 +265,4 @@ pub fn decibels(a: &Frame, b: &Frame) -> f64 {
 pub fn depths_within(a: &[f32], b: &[f32], most: f32) -> f64 {
     let both = || a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
     both().filter(|(a, b)| (**a - **b).abs() <= most).count() as f64 / both().count() as f64
-}
-
-/// The difference of depths that a share of the pixels that both see does not exceed.
-pub fn depth_quantile(a: &[f32], b: &[f32], share: f64) -> f32 {
-    let both = a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
-    let mut all: Vec<f32> = both.map(|(a, b)| (a - b).abs()).collect();
-    all.sort_by(f32::total_cmp);
-    all[((all.len() - 1) as f64 * share) as usize]
 }

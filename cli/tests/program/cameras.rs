@@ -47,9 +47,9 @@ fn scene_files_hold_poses_and_options_take_their_place() {
     folder.succeeds(&format!("{SMALL} {view} -o a.png"));
     let rows = "[[1, 0, 0, 0.5], [0, -1, 0, 0.25], [0, 0, -1, 3], [0, 0, 0, 1]]";
     let file = |pose: &str| format!("model = \"quad.obj\"\n[camera]\nfov = 90\n{pose}\n");
-    folder.put("pose.toml", &file(&format!("pose = {rows}")));
-    folder.put("eye.toml", &file("eye = [9, 9, 9]\ntarget = [0, 0, 0]"));
-    folder.put("both.toml", &file(&format!("pose = {rows}\neye = [9, 9, 9]")));
+    folder.put("pose.toml", file(&format!("pose = {rows}")));
+    folder.put("eye.toml", file("eye = [9, 9, 9]\ntarget = [0, 0, 0]"));
+    folder.put("both.toml", file(&format!("pose = {rows}\neye = [9, 9, 9]")));
     let small = "-q --size 24x16 -f nearest";
     folder.succeeds(&format!("pose.toml {small} -o b.png"));
     let flat = "1,0,0,0.5,0,-1,0,0.25,0,0,-1,3,0,0,0,1";

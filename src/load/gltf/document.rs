@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::load::files::Folder;
 use crate::load::options::LoadOptions;
 use gltf::binary::Glb;
-use gltf::json::{Root, deserialize};
+use gltf::json::{Root, Value, deserialize, serialize};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -152,17 +152,46 @@ fn read_file(path: &Path, shown: &Path, most: u64) -> Result<Vec<u8>> {
 /// The JSON of a file, and the binary part if it has one.
 fn parse(bytes: &[u8]) -> Reasoned<(Root, Option<Vec<u8>>)> {
     let (json, binary) = if bytes.starts_with(b"glTF") {
+        let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
+        if let Some(version) = word(4).filter(|version| *version != 2) {
+            return Err(format!("is a GLB of version {version}; only 2 is supported"));
+        }
+        // The crate takes the header's own 12 bytes from the length of the whole unasked.
+        if word(8).is_none_or(|length| length < 12) {
+            return Err("is no whole GLB file".into());
+        }
         let glb = Glb::from_slice(bytes).map_err(|e| format!("is no whole GLB file: {e}"))?;
         (glb.json.into_owned(), glb.bin.map(|bin| bin.into_owned()))
     } else {
         let start = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         (bytes[start..].to_vec(), None)
     };
-    let root: Root =
-        deserialize::from_slice(&json).map_err(|e| format!("is no valid glTF: {e}"))?;
+    let root = root(&json)?;
     if !root.asset.version.starts_with("2.") {
-        let version = root.asset.version.escape_debug();
-        return Err(format!("is glTF {version}; only glTF 2 is supported"));
+        return Err(other_version(&root.asset.version));
     }
     Ok((root, binary))
+}
+
+/// What a file's JSON says; without its animations where they alone are of an unknown kind.
+fn root(json: &[u8]) -> Reasoned<Root> {
+    deserialize::from_slice(json).or_else(|error| {
+        let reason = format!("is no valid glTF: {error}");
+        let Ok(Value::Object(mut whole)) = deserialize::from_slice(json) else {
+            return Err(reason);
+        };
+        let version = whole.get("asset").and_then(|asset| asset.get("version"));
+        // Files of version 1 need not say so, and have objects where version 2 has lists.
+        let version = version.map_or(Some("1"), Value::as_str).unwrap_or("2.");
+        if !version.starts_with("2.") {
+            return Err(other_version(version));
+        }
+        whole.remove("animations").ok_or(&reason)?;
+        let json = serialize::to_vec(&whole).map_err(|_| &reason)?;
+        deserialize::from_slice(&json).map_err(|_| reason)
+    })
+}
+
+fn other_version(version: &str) -> String {
+    format!("is glTF {}; only glTF 2 is supported", version.escape_debug())
 }

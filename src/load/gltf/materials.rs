@@ -4,11 +4,13 @@ use super::document::{Document, Reasoned};
 use super::uri;
 use crate::error::Result;
 use crate::load::images::Images;
+use crate::load::plan::CUT;
 use crate::scene::Material;
 use crate::scene::angle::cos_sin;
 use crate::texture::Wrap;
 use glam::{Vec2, Vec3};
 use gltf::json::extensions::texture::TextureTransform;
+use gltf::json::material::AlphaMode;
 use gltf::json::texture::{self, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Value, deserialize, image, material};
@@ -52,6 +54,9 @@ pub(super) struct GltfMaterial {
     /// How much of the occlusion there is, 0 to 1.
     pub(super) occlusion_strength: f32,
     pub(super) emissive: Option<TextureRef>,
+    /// The opacity that multiplies that of its colour texture, and below which it is cut out; `None`
+    /// where it is opaque.
+    pub(super) cut: Option<[f32; 2]>,
     /// Whether it shows its colour whatever the light.
     pub(super) is_unlit: bool,
     pub(super) height: Option<Height>,
@@ -105,7 +110,7 @@ impl GltfMaterial {
         let strength = extensions.and_then(|e| e.emissive_strength.as_ref());
         let specular = extensions.and_then(|e| e.specular.as_ref());
         let pbr = &from.pbr_metallic_roughness;
-        let [red, green, blue, _] = pbr.base_color_factor.0;
+        let [red, green, blue, opacity] = pbr.base_color_factor.0;
         let plain = Material {
             name,
             base_color: color([red, green, blue]),
@@ -141,6 +146,7 @@ impl GltfMaterial {
             }),
             occlusion_strength: unit(occlusion.map_or(1.0, |texture| texture.strength.0)),
             emissive: from.emissive_texture.as_ref().map(texture_ref),
+            cut: threshold(from).map(|threshold| [unit(opacity), threshold]),
             is_unlit: extensions.is_some_and(|e| e.unlit.is_some()),
             height: None,
             relief_depth: None,
@@ -167,6 +173,17 @@ impl GltfMaterial {
         ]
         .map(|(n, t)| (n, t.as_ref()));
         all.into_iter().chain([("height", height)]).filter_map(|(name, t)| Some((name, t?)))
+    }
+}
+
+/// The opacity below which a material is cut out.
+fn threshold(from: &material::Material) -> Option<f32> {
+    match from.alpha_mode {
+        Checked::Valid(AlphaMode::Mask) => {
+            Some(from.alpha_cutoff.map_or(CUT, |cutoff| cutoff.0.clamp(0.0, 1.0)))
+        }
+        Checked::Valid(AlphaMode::Blend) => Some(CUT),
+        _ => None,
     }
 }
 
@@ -199,6 +216,11 @@ impl Document {
                 material
                     .read_extras(extras.get())
                     .map_err(|reason| format!("material '{name}': {reason}"))?;
+            }
+            if matches!(from.alpha_mode, Checked::Valid(AlphaMode::Blend)) {
+                warnings.push(format!(
+                    "material '{name}' is not blended; drawn where its opacity is at least {CUT}"
+                ));
             }
             let placement = material.placement();
             for (kind, _) in material.textures().filter(|(_, t)| t.placement != placement) {

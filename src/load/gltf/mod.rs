@@ -63,7 +63,16 @@ fn model(mut document: Document, options: &LoadOptions) -> Result<Model> {
     let refuse = |reason: String| Error::file(&path, reason);
     let materials = document.materials().map_err(refuse)?;
     let placed = document.place().map_err(refuse)?;
-    let pieces = pieces(&mut document, &placed, &materials, options)?;
+    name_unmoved(&mut document, &placed);
+    let mut pieces = pieces(&mut document, &placed, &materials, options)?;
+    let is_none = |material: &GltfMaterial| {
+        material.albedo.is_none() && material.cut.is_some_and(|[opacity, cut]| opacity < cut)
+    };
+    let num = pieces.len();
+    pieces.retain(|piece| !is_none(&materials[piece.mesh.material]));
+    if pieces.len() < num {
+        document.warn("has materials of little opacity; left out");
+    }
     if pieces.is_empty() {
         return Err(Error::file(&path, "has no triangles"));
     }
@@ -82,6 +91,27 @@ fn model(mut document: Document, options: &LoadOptions) -> Result<Model> {
     let materials = materials.into_iter().map(given).zip(plans).collect();
     let warnings = document.warnings;
     Ok(Model { meshes, materials, images, camera, lights: placed.lights, choices, warnings })
+}
+
+/// Names what would move the vertices of what is drawn.
+fn name_unmoved(document: &mut Document, placed: &Placed) {
+    let root = &document.root;
+    let of_meshes = |instance: &Instance| {
+        let mesh = root.get(instance.mesh);
+        mesh.is_some_and(|mesh| mesh.primitives.iter().any(|primitive| primitive.targets.is_some()))
+    };
+    let has_skin =
+        |instance: &Instance| root.get(instance.node).is_some_and(|node| node.skin.is_some());
+    let found = [
+        ("skins", placed.instances.iter().any(has_skin)),
+        ("morph targets", placed.instances.iter().any(of_meshes)),
+        ("animations", !root.animations.is_empty()),
+    ];
+    let found: Vec<_> = found.into_iter().filter(|(_, is)| *is).map(|(what, _)| what).collect();
+    if !found.is_empty() {
+        let text = format!("{} are not supported; meshes stand still", found.join(", "));
+        document.warn(text);
+    }
 }
 
 /// The triangles of all instances, within the limits.
@@ -183,6 +213,15 @@ impl Planner<'_> {
         let height = pictures.height(&given, material)?;
         let mut maps = [albedo, height, None];
         let mut numbers = Numbers::default();
+        let opacity = maps[0].as_ref().zip(material.cut);
+        let opacity = opacity.map(|(albedo, [factor, threshold])| Map {
+            path: albedo.path.clone(),
+            kind: Kind::Opacity {
+                channel: Some(Channel::Matte),
+                range: [0.0, factor].map(f32::to_bits),
+                threshold: threshold.to_bits(),
+            },
+        });
         if pictures.planner.options.keep_normals {
             if material.is_unlit {
                 // It sends out its colour, and does nothing with light.
@@ -192,6 +231,7 @@ impl Planner<'_> {
                 numbers = pictures.numbers(&given, material)?;
             }
         }
+        numbers.opacity = opacity;
         let wraps = pictures.wraps;
         let wrap = given.wrap.unwrap_or_else(|| self.wrap(material, wraps, leaves));
         let depth = given.relief_depth.or(material.relief_depth).unwrap_or(DEFAULT_DEPTH);
@@ -279,7 +319,7 @@ impl Pictures<'_, '_> {
         let occlusion = gray(occlusion.0, occlusion.1, Channel::Red, of_occlusion)?;
         let emissive = self.path(&given.emissive_map, &material.emissive)?;
         let emissive = emissive.map(|path| Map { path, kind: Kind::Color });
-        Ok(Numbers { metallic, roughness, occlusion, emissive })
+        Ok(Numbers { metallic, roughness, occlusion, emissive, opacity: None })
     }
 }
 

@@ -74,7 +74,9 @@ impl Document {
         let tangents = get(Semantic::Tangents).filter(|_| !normals.is_empty());
         let tangents = self.optional::<4>(tangents, num, "tangents")?;
         let tangents = tangents.into_iter().map(Vec4::from).collect();
-        let mesh = Mesh { material, triangles, positions, tex_coords, normals, ..Mesh::default() };
+        let colors = self.colors(get(Semantic::Colors(0)), num)?;
+        let mesh =
+            Mesh { material, triangles, positions, tex_coords, normals, colors, ..Mesh::default() };
         let mut piece = Piece { mesh, tangents };
         piece.drop_unused();
         Ok(piece)
@@ -92,6 +94,19 @@ impl Document {
             return Err(format!("has {num} positions and {} {what}", values.len()));
         }
         Ok(values)
+    }
+
+    /// Linear colours of all vertices, without what they say of opacity.
+    fn colors(&self, accessor: Option<Index<Accessor>>, num: usize) -> Reasoned<Vec<Vec3>> {
+        let has_opacity = accessor.and_then(|accessor| self.num_components(accessor)) == Some(4);
+        let colors: Vec<Vec3> = if has_opacity {
+            let colors = self.optional::<4>(accessor, num, "colours")?;
+            colors.into_iter().map(|[r, g, b, _]| Vec3::new(r, g, b)).collect()
+        } else {
+            self.optional::<3>(accessor, num, "colours")?.into_iter().map(Vec3::from).collect()
+        };
+        // `max` and `min` of a number and NaN are the number.
+        Ok(colors.into_iter().map(|color| color.max(Vec3::ZERO).min(Vec3::splat(1e6))).collect())
     }
 
     fn triangles(
@@ -156,6 +171,7 @@ impl Piece {
         keep(&mut mesh.positions, &old_of_new);
         keep(&mut mesh.tex_coords, &old_of_new);
         keep(&mut mesh.normals, &old_of_new);
+        keep(&mut mesh.colors, &old_of_new);
         keep(tangents, &old_of_new);
     }
 

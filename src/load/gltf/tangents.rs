@@ -21,8 +21,9 @@ pub(super) fn with_frames(piece: Piece, is_mapped: bool) -> Mesh {
     } else {
         (mesh, tangents)
     };
-    let Mesh { name, material, positions, tex_coords, normals, triangles, .. } = mesh;
-    let mut mesh = Mesh { name, material, ..Mesh::new(positions, tex_coords, normals, triangles) };
+    let Mesh { name, material, positions, tex_coords, normals, triangles, colors, .. } = mesh;
+    let mut mesh =
+        Mesh { name, material, colors, ..Mesh::new(positions, tex_coords, normals, triangles) };
     if is_mapped {
         let frames = mesh.tangents.iter_mut().zip(&mesh.normals).zip(&tangents);
         frames.for_each(|((frame, normal), tangent)| *frame = framed(*frame, *normal, *tangent));
@@ -107,7 +108,7 @@ impl Geometry<ExactOps> for Corners<'_> {
 fn split(mut mesh: Mesh, of_corners: &[Vec4]) -> (Mesh, Vec<Vec4>) {
     let mut tangents = vec![None; mesh.positions.len()];
     let mut copies: HashMap<(u32, [u32; 4]), u32> = HashMap::new();
-    let Mesh { triangles, positions, tex_coords, normals, .. } = &mut mesh;
+    let Mesh { triangles, positions, tex_coords, normals, colors, .. } = &mut mesh;
     for (corner, &tangent) in triangles.as_flattened_mut().iter_mut().zip(of_corners) {
         let vertex = *corner as usize;
         if *tangents[vertex].get_or_insert(tangent) == tangent {
@@ -118,6 +119,7 @@ fn split(mut mesh: Mesh, of_corners: &[Vec4]) -> (Mesh, Vec<Vec4>) {
             positions.push(positions[vertex]);
             tex_coords.push(tex_coords[vertex]);
             normals.push(normals[vertex]);
+            colors.extend(colors.get(vertex).copied());
             tangents.push(Some(tangent));
             tangents.len() as u32 - 1
         });
