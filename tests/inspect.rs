@@ -8,8 +8,10 @@ use basrelief::inspect::{self, Cut, Figure, Inspection, View, measure};
 use basrelief::relief::HeightField;
 use basrelief::texture::{Surface, Wrap};
 use basrelief::{
-    Derivatives, Filter, FootprintRule, Formulas, Scene, Settings, Visible, reference, scene,
+    Derivatives, Filter, FootprintRule, Formulas, Light, Lighting, Scene, Settings, Visible,
+    reference, scene,
 };
+use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -360,4 +362,45 @@ fn the_horizon_sees_all_of_what_is_flat() {
         let pixels = measure(&scene, &settings, view).unwrap().pixels;
         assert!(pixels.iter().flatten().all(|value| value[0] > 0.999), "{view:?}");
     }
+}
+
+#[test]
+fn inspected_pixels_say_what_light_reaches_them() {
+    let mut scene = basrelief::scene::builtin();
+    scene.lights = vec![
+        Light::Point { position: Vec3::new(0.0, 0.4, 0.0), intensity: Vec3::splat(1e-3) },
+        Light::sun(Vec3::new(-0.45, 0.577, -0.9), Vec3::ONE),
+    ];
+    let lit = Settings { width: 64, height: 36, lighting: Lighting::Lit, ..Settings::default() };
+    let [shadow, light, open] = [View::Shadow, View::Light, View::Occlusion]
+        .map(|view| inspect::measure(&scene, &lit, view).expect("a valid scene"));
+    let (mut num_dark, mut num_cuts) = (0, 0);
+    for y in 0..36 {
+        for x in 0..64 {
+            let i = y * 64 + x;
+            let [Some([part, ..]), Some(shown), Some([open, ..])] =
+                [shadow.pixels[i], light.pixels[i], open.pixels[i]]
+            else {
+                continue;
+            };
+            assert!((0.0..=1.0).contains(&part) && (0.0..=1.0).contains(&open), "{part} {open}");
+            num_dark += usize::from(part < 0.5);
+            if (x + y) % 13 > 0 {
+                continue;
+            }
+            // The same by inspection of the pixel.
+            let Ok(seen) = inspect::pixel(&scene, &lit, [x as u32, y as u32]) else { continue };
+            let seen = seen.light.expect("light");
+            let found = (seen.reaching.shown(), seen.reaching.part(), seen.reaching.open);
+            let is_near = (found.0 - Vec3::from(shown)).abs().max_element() < 0.02;
+            assert!(is_near && (found.1 - part).abs() < 0.02 && (found.2 - open).abs() < 0.02);
+            let Some(cut) = seen.cut else { continue };
+            assert_eq!(seen.main, Some(1), "the sun");
+            assert!(cut.points.windows(2).all(|pair| pair[0].horizon <= pair[1].horizon));
+            num_cuts += 1;
+        }
+    }
+    assert!(num_dark > 50 && num_cuts > 20, "{num_dark} pixels in shadow, {num_cuts} cuts");
+    let unlit = Settings { lighting: Lighting::Unlit, ..lit };
+    assert!(inspect::pixel(&scene, &unlit, [32, 30]).expect("a surface").light.is_none());
 }

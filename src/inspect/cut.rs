@@ -7,6 +7,7 @@
 //! relief between two rows is `M_i - M_(i-1)`. All in texels of the level along the line.
 
 use super::ground::QuadPixel;
+use super::ray::Ray;
 use crate::footprint::{Ellipse, FootprintRule};
 use crate::settings::Formulas;
 use crate::texture::{Level, Surface};
@@ -60,12 +61,36 @@ impl Cut {
         level: usize,
         max_anisotropy: f32,
     ) -> Self {
+        let Ray { base, displacement, .. } = seen.ray;
+        Self::along((surface, level), seen, [base, displacement], max_anisotropy)
+    }
+
+    /// The cut of the full texture along light that moves by `displacement` down to the deepest relief
+    /// and reaches the pixel's hit, if nothing is in its way.
+    pub(super) fn of_light(
+        surface: &Surface,
+        seen: &QuadPixel,
+        displacement: [f32; 2],
+        max_anisotropy: f32,
+    ) -> Self {
+        let base = [0, 1].map(|i| seen.ray.hit[i] - displacement[i] * seen.ray.hit_depth);
+        Self::along((surface, 0), seen, [base, displacement], max_anisotropy)
+    }
+
+    /// The cut of a level along a ray to the pixel's hit, by where it meets the polygon and how far it
+    /// moves.
+    fn along(
+        (surface, level): (&Surface, usize),
+        seen: &QuadPixel,
+        [base, displacement]: [[f32; 2]; 2],
+        max_anisotropy: f32,
+    ) -> Self {
         let level = &surface.levels()[level];
         let texels = level.texels_per_repeat();
         let ellipse = Ellipse::new(&seen.footprint(&FootprintRule::FLAT), texels, Formulas::Meant);
         let texels = texels.map(f64::from);
         let scaled = |p: [f32; 2]| [f64::from(p[0]) * texels[0], f64::from(p[1]) * texels[1]];
-        let line = Line::new(level, scaled(seen.ray.base), scaled(seen.ray.displacement));
+        let line = Line::new(level, scaled(base), scaled(displacement));
         let half = line.half_chord(&ellipse.bounded(max_anisotropy));
         let hit_depth = f64::from(seen.ray.hit_depth);
         // What a repeat is long on this line: the hypotenuse of its parts along u and v.

@@ -3,10 +3,12 @@
 use super::ray::Ray;
 use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::geometry::{self, Geometry, ScreenTriangle, sample_offsets};
+use crate::light::SurfacePoint;
 use crate::raster::{AttributePlanes, Edges, Rect};
 use crate::relief::{HeightField, displacement, finite, march};
+use crate::render::surface_point;
 use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
 
@@ -38,7 +40,8 @@ pub(super) struct QuadPixel<'a> {
 impl Ground {
     /// The nearest triangle at the centre of a pixel.
     pub(super) fn at(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Option<Self> {
-        let settings = Settings { msaa: 1, ..settings.clone() };
+        // Lit planes say where a pixel is in the world.
+        let settings = Settings { msaa: 1, lighting: Lighting::Lit, ..settings.clone() };
         let geometry = geometry::project(scene, &settings);
         let triangle = nearest(&geometry, pixel)?;
         let planes = AttributePlanes::new(&geometry, triangle, scene, &settings);
@@ -46,6 +49,11 @@ impl Ground {
         let material = scene.meshes[mesh].material;
         (!scene.meshes[mesh].tex_coords.is_empty() || scene.materials[material].surface.is_none())
             .then_some(Self { mesh, triangle: triangle.triangle as usize, material, pixel, planes })
+    }
+
+    /// The polygon's point at the pixel's centre.
+    pub(super) fn point(&self) -> Option<SurfacePoint> {
+        surface_point(&self.planes, self.pixel.map(|c| c as f32 + 0.5))
     }
 
     /// The pixel over the relief of `field`, or over the bare polygon.

@@ -2,14 +2,17 @@
 
 use super::cut::Cut;
 use super::ground::{QuadPixel, Quads};
+use super::light::{RAYS, hit_of, plain_hit};
 use super::sets::Sets;
 use crate::error::Result;
 use crate::filter::{LevelChoice, Prepared, Scratch};
 use crate::footprint::{Ellipse, Footprint, Footprints};
 use crate::geometry;
+use crate::light::SurfacePoint;
+use crate::light::exact::{ExactLight, Hit};
 use crate::raster::{Drawn, Pool, QuadBlock, QuadPair, Rasterizer};
-use crate::render::{PreparedScene, Shader};
-use crate::scene::Scene;
+use crate::render::{PreparedScene, Shader, pixel_center, surface_point};
+use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
 use crate::texture::Texel;
@@ -38,6 +41,20 @@ pub enum View {
     Normal,
     /// Texture coordinates of the hit in repeats.
     Uv,
+    /// The part of what suns and points send that nothing hides from the hit, 0 to 1; 1 without
+    /// lights.
+    Shadow,
+    /// What all lights and the sky light a white surface to at the hit, linear RGB.
+    Light,
+    /// The part of the sky that nothing hides from the hit, weighed by the cosine, 0 to 1.
+    Occlusion,
+}
+
+impl View {
+    /// Whether it looks for light, so that the scene's normals and lights are asked for.
+    pub fn is_of_light(self) -> bool {
+        matches!(self, Self::Shadow | Self::Light | Self::Occlusion)
+    }
 }
 
 /// Numbers of every pixel; what a [`View`] does not give is 0.
@@ -65,7 +82,8 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
         prepared.make_ready(scene, settings);
     }
     let msaa = if view == View::Coverage { settings.msaa } else { 1 };
-    let lighting = if view == View::Normal { Lighting::Lit } else { Lighting::Unlit };
+    let is_lit = view == View::Normal || view.is_of_light();
+    let lighting = if is_lit { Lighting::Lit } else { Lighting::Unlit };
     let asked = settings;
     let settings = Settings { msaa, lighting, ..settings.clone() };
     let pool = Pool::default();
@@ -166,7 +184,8 @@ impl Probe<'_> {
         let ground = self.prepared.ground(self.scene, self.asked, index);
         let ground = ground.filter(|_| self.view != View::Coverage);
         let Some(ground) = ground else {
-            return block.pairs().map(|pair| self.of_plain(&pair)).collect();
+            let material = &self.scene.materials[block.material];
+            return block.pairs().map(|pair| self.of_plain(&pair, material)).collect();
         };
         let (prepared, is_lit) = (ground.prepared, ground.asks_for_lights());
         // Made and chosen for the whole block, as frames do it.
@@ -188,6 +207,10 @@ impl Probe<'_> {
                         footprint: footprints.lane(lane),
                         choice: choices[lane],
                     };
+                    if self.view.is_of_light() {
+                        let hit = |point| hit_of(ground.material, prepared, &seen.pixel, point);
+                        return self.light(&pair, lane, hit);
+                    }
                     self.value(&pair, prepared, &seen)
                 })
             })
@@ -196,16 +219,39 @@ impl Probe<'_> {
 
     /// Pixels of a material without a texture. How many triangles there are is counted, not
     /// measured.
-    fn of_plain(&self, pair: &QuadPair) -> [Option<[f32; 3]>; 8] {
+    fn of_plain(&self, pair: &QuadPair, material: &Material) -> [Option<[f32; 3]>; 8] {
         match self.view {
             View::Depth => each_covered(pair, |lane| [distance(pair, lane), 0.0, 0.0]),
             View::Normal => each_covered(pair, |lane| world(pair, lane, Texel::UP)),
+            View::Shadow | View::Light | View::Occlusion => each_covered(pair, |lane| {
+                self.light(pair, lane, |point| plain_hit(material, point))
+            }),
             View::Coverage
             | View::Mip
             | View::Footprint
             | View::Visible
             | View::Horizon
             | View::Uv => [None; 8],
+        }
+    }
+
+    /// What light does at a lane's hit.
+    fn light<'a>(
+        &self,
+        pair: &QuadPair,
+        lane: usize,
+        hit: impl Fn(SurfacePoint) -> Hit<'a>,
+    ) -> [f32; 3] {
+        let Some(point) = surface_point(pair.planes[lane / 4], pixel_center(pair, lane)) else {
+            return [0.0; 3];
+        };
+        let occluders = self.prepared.occluders(self.scene);
+        let exact = ExactLight { scene: self.scene, occluders };
+        let reaching = exact.reaching(&hit(point), RAYS);
+        match self.view {
+            View::Shadow => [reaching.part(), 0.0, 0.0],
+            View::Occlusion => [reaching.open, 0.0, 0.0],
+            _ => reaching.shown().to_array(),
         }
     }
 
@@ -245,7 +291,7 @@ impl Probe<'_> {
                 world(pair, pixel.lane, surface.base().texel(x, y).normal)
             }
             View::Uv => [pixel.ray.hit[0], pixel.ray.hit[1], 0.0],
-            View::Coverage => [0.0; 3],
+            View::Coverage | View::Shadow | View::Light | View::Occlusion => [0.0; 3],
         }
     }
 }

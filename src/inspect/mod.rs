@@ -2,7 +2,8 @@
 //!
 //! [`pixel`] gathers for a pixel of a frame: where its view ray meets polygon and relief ([`Ray`]),
 //! both ellipses in both readings of the paper's formulas ([`Reading`]), the sets of texels
-//! ([`Sets`]), and a cut through the relief along the view ([`Cut`]). [`Figure`] places the eye on
+//! ([`Sets`]), a cut through the relief along the view ([`Cut`]), and in a lit frame the light that
+//! reaches it, with a cut along the main light ([`PixelLight`]). [`Figure`] places the eye on
 //! the built-in scene so that one of the paper's figures is seen. [`measure`] gives one such number
 //! for every pixel of a frame. Plain data: nothing here draws.
 //!
@@ -19,14 +20,17 @@
 mod cut;
 mod figures;
 mod ground;
+mod light;
 mod measure;
 mod ray;
 mod readings;
 mod sets;
 
 pub use crate::footprint::Ellipse;
+pub use crate::light::exact::{LightReaching, Reaching};
 pub use cut::{Cut, CutPoint};
 pub use figures::Figure;
+pub use light::PixelLight;
 pub use measure::{Measured, View, measure};
 pub use ray::Ray;
 pub use readings::{Corner, Projected, Reading};
@@ -35,7 +39,7 @@ pub use sets::Sets;
 use crate::error::{Error, Result};
 use crate::filter::Prepared;
 use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::settings::{Lighting, Settings};
 use crate::texture::FULL_F32;
 use ground::Ground;
 
@@ -60,6 +64,8 @@ pub struct Inspection {
     pub sets: Sets,
     /// The relief along the view ray.
     pub cut: Cut,
+    /// The light that reaches the hit, in a lit frame.
+    pub light: Option<PixelLight>,
     prepared: Prepared,
 }
 
@@ -91,7 +97,11 @@ pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Insp
     let prepared = if settings.parallax { prepared } else { prepared.without_relief() };
     let seen = ground.pixel(prepared.field());
     let sets = Sets::new(&prepared, &seen, &settings.filter);
-    let cut = Cut::new(prepared.surface(), &seen, sets.level, settings.filter.max_anisotropy());
+    let most = settings.filter.max_anisotropy();
+    let cut = Cut::new(prepared.surface(), &seen, sets.level, most);
+    let point = ground.point().filter(|_| settings.lighting == Lighting::Lit);
+    let light =
+        point.map(|point| PixelLight::new(scene, (material, &prepared), (&seen, point), most));
     Ok(Inspection {
         pixel,
         mesh: ground.mesh,
@@ -107,6 +117,7 @@ pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Insp
         ),
         sets,
         cut,
+        light,
         prepared,
     })
 }

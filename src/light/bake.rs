@@ -59,7 +59,7 @@ impl TextureFrame {
     }
 
     /// Light from a unit direction; `None` from behind the surface.
-    fn beam(&self, to_light: Vec3, intensity: Vec3) -> Option<Beam> {
+    pub fn beam(&self, to_light: Vec3, intensity: Vec3) -> Option<Beam> {
         let [u, v] = self.tangents;
         // Cramer's rule, as for views: to_light = alpha U + beta V + up s N.
         let across = u.cross(v);

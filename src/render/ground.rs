@@ -154,13 +154,13 @@ pub(super) fn eval([a, b, c]: &Plane, x: PixelLanes, y: PixelLanes) -> PixelLane
 }
 
 /// Where a lane's pixel has its centre on the screen.
-pub(super) fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
+pub(crate) fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
     let [x, y] = pair.pixel(lane);
     [x as f32 + 0.5, y as f32 + 0.5]
 }
 
 /// The polygon's point at a place of the screen; `None` without lighting.
-pub(super) fn surface_point(planes: &AttributePlanes, [x, y]: [f32; 2]) -> Option<SurfacePoint> {
+pub(crate) fn surface_point(planes: &AttributePlanes, [x, y]: [f32; 2]) -> Option<SurfacePoint> {
     let LitPlanes { position, normal, tangent_u, tangent_v, .. } = planes.lit.as_deref()?;
     let [a, b, c] = planes.inverse_w;
     // Divided once for all twelve coordinates.

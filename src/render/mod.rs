@@ -24,6 +24,7 @@ mod shade;
 mod shadows;
 mod skies;
 
+pub(crate) use ground::{pixel_center, surface_point};
 pub(crate) use outlines::Outlines;
 pub(crate) use passages::Passages;
 pub(crate) use prepared::PreparedScene;

@@ -28,7 +28,8 @@ pub(crate) fn run(options: &RenderOptions, view: View) -> Result<ExitCode, Refus
     let format = output::image_format(sequence.output())?;
     let measured = thread_pool(options.threads)?.install(|| {
         let progress = Progress::new(options.quiet);
-        let loaded = options.scene.load(&settings, view == View::Normal, &progress)?;
+        let loaded =
+            options.scene.load(&settings, view == View::Normal || view.is_of_light(), &progress)?;
         loaded.warnings.iter().for_each(|warning| progress.warn(warning));
         progress.stage("measuring");
         measure(&loaded.scene, &settings, view).map_err(Refusal::from)

@@ -63,6 +63,9 @@ pub(crate) const VIEWS: &[Choice<View>] = &[
     ("depth", View::Depth, "Distance to the relief along the view"),
     ("normal", View::Normal, "Normal of the relief in world space"),
     ("uv", View::Uv, "Texture coordinates of the hit"),
+    ("shadow", View::Shadow, "The part of what suns and points send that reaches the hit"),
+    ("light", View::Light, "What lights and sky light a white surface to at the hit"),
+    ("occlusion", View::Occlusion, "The part of the sky that nothing hides from the hit"),
 ];
 
 #[derive(Args)]

@@ -88,7 +88,19 @@ fn wrong_pixels_are_refused() {
 fn views_have_a_legend_below_the_frame() {
     let folder = Folder::new();
     let mut pictures = Vec::new();
-    for view in ["coverage", "mip", "footprint", "visible", "horizon", "depth", "normal", "uv"] {
+    for view in [
+        "coverage",
+        "mip",
+        "footprint",
+        "visible",
+        "horizon",
+        "depth",
+        "normal",
+        "uv",
+        "shadow",
+        "light",
+        "occlusion",
+    ] {
         folder.succeeds(&format!("--view {view} --filter visible --size 96x54 -o {view}.png"));
         let picture = picture(folder.path(&format!("{view}.png")));
         assert!(picture.width() == 96 && picture.height() > 90, "{view}");

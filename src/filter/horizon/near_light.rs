@@ -8,7 +8,7 @@
 //! each counts by how near it is. A light that is above the polygon is hidden by nothing that lies
 //! farther away than it does: that would have to be higher than the polygon.
 
-use super::lit::{Fit, Linear, azimuth};
+use super::fit::{Fit, Linear, azimuth};
 use crate::light::{Curved, NORMAL_PLANE, NUM_AZIMUTHS, Ways};
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes};
 use crate::texture::{FULL_F32, Rows};

@@ -22,11 +22,13 @@ mod between;
 mod ceiling;
 mod holes;
 mod occluders;
+mod reaching;
 mod sequence;
 
 pub use between::Receiver;
 pub use ceiling::{Ceiling, Spots};
 pub use occluders::{LightRay, Occluders};
+pub use reaching::{LightReaching, Reaching};
 pub use sequence::Sequence;
 
 use super::reflection::{self, Fresnel, LEAST_COSINE};

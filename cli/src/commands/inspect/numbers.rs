@@ -4,8 +4,10 @@ use crate::commands::inspect::subject::Subject;
 use crate::options::choices::word;
 use crate::refusal::Refusal;
 use basrelief::inspect::Ellipse;
-use basrelief::inspect::{Corner, Cut, Inspection, Projected, Ray, Reading, Sets};
-use basrelief::{Derivatives, FootprintRule, Formulas};
+use basrelief::inspect::{
+    Corner, Cut, Inspection, PixelLight, Projected, Ray, Reaching, Reading, Sets,
+};
+use basrelief::{Derivatives, FootprintRule, Formulas, Light};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -49,7 +51,37 @@ pub(crate) fn text(seen: &Inspection, subject: &Subject) -> String {
     }
     push_sets(&mut text, &seen.sets, subject);
     push_cut(&mut text, &seen.cut);
+    if let Some(light) = &seen.light {
+        push_light(&mut text, light, subject);
+    }
     text
+}
+
+fn push_light(text: &mut String, light: &PixelLight, subject: &Subject) {
+    let rgb = |c: glam::Vec3| format!("{:.4} {:.4} {:.4}", c.x, c.y, c.z);
+    let Reaching { lights, sky, open } = &light.reaching;
+    let _ =
+        writeln!(text, "\nthe light that reaches the hit, and what it lights a white surface to");
+    for (i, found) in lights.iter().enumerate() {
+        let kind = match subject.scene.lights[i] {
+            Light::Sun { .. } => "sun",
+            Light::Point { .. } => "point",
+        };
+        let main = if light.main == Some(i) { ", the main one" } else { "" };
+        let name = format!("{kind} {i}{main}");
+        let (part, shown) = (found.part * 100.0, rgb(found.shown));
+        let _ = writeln!(text, "  {name:<24} {part:5.1} % of it   {shown}");
+    }
+    let _ = writeln!(text, "  {:<24} {:5.1} % open    {}", "sky", open * 100.0, rgb(*sky));
+    let _ = writeln!(text, "  {:<24} {:16} {}", "all", "", rgb(light.reaching.shown()));
+    if let Some(cut) = &light.cut {
+        let [lit, all] = cut.num_seen();
+        let length: f64 = cut.points.iter().map(|point| point.visible).sum();
+        let _ = writeln!(
+            text,
+            "  along the main light's way: {lit} of {all} rows are lit; lit lengths add up to {length:.2} texels"
+        );
+    }
 }
 
 fn push_ray(text: &mut String, ray: &Ray, seen: &Inspection) {
@@ -186,6 +218,20 @@ struct Report<'a> {
     covered_by: &'a [[[i32; 2]; 2]],
     counted_twice: &'a [([i32; 2], u32)],
     cut: CutReport,
+    light: Option<LightReport>,
+}
+
+/// Linear RGB: what a white surface is lit to.
+#[derive(Serialize)]
+struct LightReport {
+    /// Of each light: the part that nothing hides, and what it shows.
+    lights: Vec<(f32, [f32; 3])>,
+    sky: [f32; 3],
+    /// The part of the sky that nothing hides.
+    open: f32,
+    main: Option<usize>,
+    /// Along the main light's way, in texels.
+    cut: Option<CutReport>,
 }
 
 #[derive(Serialize)]
@@ -252,6 +298,20 @@ impl<'a> Report<'a> {
             covered_by: &sets.covered_by,
             counted_twice: &sets.counted_twice,
             cut: CutReport::new(cut),
+            light: seen.light.as_ref().map(LightReport::new),
+        }
+    }
+}
+
+impl LightReport {
+    fn new(light: &PixelLight) -> Self {
+        let Reaching { lights, sky, open } = &light.reaching;
+        Self {
+            lights: lights.iter().map(|light| (light.part, light.shown.to_array())).collect(),
+            sky: sky.to_array(),
+            open: *open,
+            main: light.main,
+            cut: light.cut.as_ref().map(CutReport::new),
         }
     }
 }

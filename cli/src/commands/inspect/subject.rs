@@ -1,12 +1,11 @@
 //! What is inspected: a pixel of a scene, by options or as a figure of the paper.
 
 use crate::options::inspect::InspectOptions;
-use crate::options::settings::Look;
 use crate::pictures::inspection::palette::Layers;
 use crate::progress::Progress;
 use crate::refusal::Refusal;
 use basrelief::inspect::{Figure, Inspection};
-use basrelief::{Scene, Settings};
+use basrelief::{Lighting, Scene, Settings};
 
 /// A scene, settings and a pixel.
 pub(crate) struct Subject {
@@ -30,13 +29,14 @@ impl Subject {
             });
         }
         let pixel = options.pixel.ok_or("the pixel is missing: say --pixel X,Y, or --figure N")?;
-        let mut settings = options.settings.settings(Look::default())?;
+        let mut settings = options.settings.settings(options.scene.look())?;
         settings.filter = options.settings.filter.inspected(settings.filter);
         if settings.region.is_some() {
             return Err("--region: a pixel is named by its place in the whole picture".into());
         }
         let progress = Progress::new(false);
-        let loaded = options.scene.load(&settings, false, &progress)?;
+        let loaded =
+            options.scene.load(&settings, settings.lighting == Lighting::Lit, &progress)?;
         loaded.warnings.iter().for_each(|warning| progress.warn(warning));
         Ok(Self { scene: loaded.scene, settings, pixel, layers: Layers::default(), title: None })
     }

@@ -1,4 +1,5 @@
-//! The cut through the relief along the view; the eye is on the left, above.
+//! The cut through the relief along the view or a light's way; the eye, or the light, is on the left,
+//! above.
 
 use crate::pictures::draw::{CELL, Canvas, Pen, Point, Rgba, Size};
 use crate::pictures::inspection::palette::{
@@ -11,6 +12,40 @@ const HORIZON: Rgba = [230, 159, 0, 255];
 
 /// Part of the relief's depth that is drawn above the polygon.
 const ABOVE: f64 = 0.34;
+
+/// Whose way the relief is cut along.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Along {
+    View,
+    Light,
+}
+
+impl Along {
+    fn title(self) -> &'static str {
+        match self {
+            Self::View => "Cut along the view direction",
+            Self::Light => "Cut along the main light",
+        }
+    }
+
+    /// What the ray, what it meets, and what it does not are called.
+    fn words(self) -> [&'static str; 4] {
+        match self {
+            Self::View => [
+                "view ray",
+                "seen relief, and its visible length above the polygon",
+                "hidden relief",
+                "running horizon",
+            ],
+            Self::Light => [
+                "ray of the light to the hit",
+                "lit relief, and its lit length above the polygon",
+                "relief in shadow",
+                "edge of the light",
+            ],
+        }
+    }
+}
 
 /// From the cut to pixels.
 struct Map {
@@ -29,7 +64,12 @@ impl Map {
 }
 
 /// Draws a cut through the relief of a mip level.
-pub(crate) fn draw(cut: &Cut, level: usize, size: [u32; 2], layers: Layers) -> Canvas {
+pub(crate) fn draw(
+    cut: &Cut,
+    (along, level): (Along, usize),
+    size: [u32; 2],
+    layers: Layers,
+) -> Canvas {
     let mut canvas = Canvas::new(size[0], size[1], WHITE);
     let [Some(first), Some(last)] = [cut.points.first(), cut.points.last()] else { return canvas };
     let [width, height] = size.map(f64::from);
@@ -47,19 +87,20 @@ pub(crate) fn draw(cut: &Cut, level: usize, size: [u32; 2], layers: Layers) -> C
         // The ray is traced through the full texture: the hit need not lie on this outline.
         unit += &format!("; relief of level {level}, hit in level 0");
     }
-    canvas.text([0.0, 0.0], "Cut along the view direction", Size::Bold, INK);
+    canvas.text([0.0, 0.0], along.title(), Size::Bold, INK);
     canvas.text([240.0, 0.0], &unit, Size::Small, FAINT);
-    keys(&mut canvas, layers);
+    keys(&mut canvas, along, layers);
     canvas
 }
 
-fn keys(canvas: &mut Canvas, layers: Layers) {
+fn keys(canvas: &mut Canvas, along: Along, layers: Layers) {
+    let [ray, seen, hidden, edge] = along.words();
     let keys = [
-        (true, RAY, "view ray"),
+        (true, RAY, ray),
         (true, FLAT, "polygon"),
-        (layers.horizon, VISIBLE, "seen relief, and its visible length above the polygon"),
-        (layers.horizon, HIDDEN, "hidden relief"),
-        (layers.horizon, HORIZON, "running horizon"),
+        (layers.horizon, VISIBLE, seen),
+        (layers.horizon, HIDDEN, hidden),
+        (layers.horizon, HORIZON, edge),
     ];
     let mut x = 0.0;
     for (_, color, text) in keys.into_iter().filter(|(is_shown, ..)| *is_shown) {

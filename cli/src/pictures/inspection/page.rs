@@ -1,10 +1,11 @@
 //! The picture of an inspected pixel: texels above, a cut below, a legend beside.
 
 use crate::pictures::draw::{CELL, Canvas, Pen, Rgba, Size};
+use crate::pictures::inspection::cut::{self, Along};
 use crate::pictures::inspection::palette::{
     FLAT, HIDDEN, INK, Layers, RAY, RELIEF, SKIPPED, TWICE, VISIBLE, WHITE,
 };
-use crate::pictures::inspection::{cut, texels};
+use crate::pictures::inspection::texels;
 use basrelief::inspect::Inspection;
 
 const WIDTH: u32 = 1280;
@@ -12,20 +13,31 @@ const TITLE_HEIGHT: u32 = 40;
 const TEXELS_SIZE: [u32; 2] = [880, 600];
 const CUT_HEIGHT: u32 = 400;
 const MARGIN: u32 = 16;
+const CUT_SIZE: [u32; 2] = [WIDTH - 2 * MARGIN, CUT_HEIGHT];
 
-/// Draws what a pixel sees; the cut only where relief is traced.
+/// Draws what a pixel sees; the cut only where relief is traced, and one along the main light where
+/// there is one.
 pub(crate) fn draw(seen: &Inspection, title: &str, layers: Layers) -> Canvas {
     let [width, texels_height] = TEXELS_SIZE;
     let has_cut = seen.cut.displacement > 0.0;
     let top = TITLE_HEIGHT + texels_height + MARGIN;
-    let mut canvas = Canvas::new(WIDTH, top + if has_cut { CUT_HEIGHT + MARGIN } else { 0 }, WHITE);
+    let of_light = seen.light.as_ref().and_then(|light| light.cut.as_ref());
+    let of_light = of_light.filter(|cut| has_cut && cut.displacement > 0.0);
+    let num_cuts = u32::from(has_cut) + u32::from(of_light.is_some());
+    let mut canvas = Canvas::new(WIDTH, top + num_cuts * (CUT_HEIGHT + MARGIN), WHITE);
     canvas.text([MARGIN as f32, 10.0], title, Size::Title, INK);
     canvas.picture([MARGIN as i32, TITLE_HEIGHT as i32], &texels::draw(seen, TEXELS_SIZE, layers));
     legend(&mut canvas, [(width + 2 * MARGIN) as f32, TITLE_HEIGHT as f32], seen, layers);
     if has_cut {
         canvas.picture(
             [MARGIN as i32, top as i32],
-            &cut::draw(&seen.cut, seen.sets.level, [WIDTH - 2 * MARGIN, CUT_HEIGHT], layers),
+            &cut::draw(&seen.cut, (Along::View, seen.sets.level), CUT_SIZE, layers),
+        );
+    }
+    if let Some(cut) = of_light {
+        canvas.picture(
+            [MARGIN as i32, (top + CUT_HEIGHT + MARGIN) as i32],
+            &cut::draw(cut, (Along::Light, 0), CUT_SIZE, Layers::default()),
         );
     }
     canvas

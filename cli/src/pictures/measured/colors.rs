@@ -2,6 +2,7 @@
 
 use crate::pictures::draw::Ramp;
 use basrelief::inspect::{Measured, View};
+use basrelief::texture::srgb8_from_linear;
 
 /// sRGB.
 type Rgb = [u8; 3];
@@ -53,6 +54,9 @@ impl Scale {
             View::Depth => "distance along the view, in the scene's units",
             View::Normal => "normal of the relief in world space",
             View::Uv => "texture coordinates of the hit, within a repeat",
+            View::Shadow => "part of what suns and points send that reaches the hit",
+            View::Light => "what lights and sky light a white surface to at the hit",
+            View::Occlusion => "part of the sky that nothing hides from the hit",
         }
     }
 
@@ -76,7 +80,17 @@ impl Scale {
                 let ticks = steps(MOST_LOG_AREA as i32 / 2, &|i| (1_u32 << (2 * i)).to_string());
                 Key::Bar { ramp: Ramp::Viridis, ticks }
             }
-            View::Visible | View::Horizon => Key::Bar { ramp: Ramp::Hidden, ticks: shares() },
+            View::Visible | View::Horizon | View::Shadow | View::Occlusion => {
+                Key::Bar { ramp: Ramp::Hidden, ticks: shares() }
+            }
+            View::Light => Key::Areas(
+                [0.0, 0.25, 0.5, 0.75, 1.0]
+                    .map(|light| {
+                        let more = if light == 1.0 { " and more" } else { "" };
+                        (of_light([light; 3]), format!("{light}{more}"))
+                    })
+                    .to_vec(),
+            ),
             View::Depth => {
                 let [low, high] = self.distances;
                 let ticks = steps(4, &|i| distance((low + (high - low) * i as f32 / 4.0).exp2()));
@@ -127,7 +141,8 @@ impl Scale {
                 if is_striped { mix(level, [255; 3], 0.6) } else { level }
             }
             View::Footprint => Ramp::Viridis.at(a.max(1.0).log2() / MOST_LOG_AREA),
-            View::Visible | View::Horizon => Ramp::Hidden.at(a),
+            View::Visible | View::Horizon | View::Shadow | View::Occlusion => Ramp::Hidden.at(a),
+            View::Light => of_light([a, b, c]),
             View::Depth => {
                 let [low, high] = self.distances;
                 Ramp::Viridis.at((a.log2() - low) / (high - low))
@@ -146,6 +161,11 @@ fn mix(from: Rgb, to: Rgb, part: f32) -> Rgb {
 
 fn of_normal(normal: [f32; 3]) -> Rgb {
     normal.map(|c| ((c * 0.5 + 0.5) * 255.0 + 0.5) as u8)
+}
+
+/// As pictures show light.
+fn of_light(light: [f32; 3]) -> Rgb {
+    light.map(srgb8_from_linear)
 }
 
 /// Red grows with u and green with v in each repeat.
