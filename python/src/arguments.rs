@@ -42,9 +42,8 @@ pub(crate) fn exception(error: basrelief::Error) -> PyErr {
 fn as_array<'py>(arg: &Bound<'py, PyAny>, name: &str, kinds: &str) -> PyResult<Bound<'py, PyAny>> {
     static AS_ARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let py = arg.py();
-    let as_array = AS_ARRAY.get_or_try_init(py, || {
-        Ok::<_, PyErr>(py.import("numpy")?.getattr("asarray")?.unbind())
-    })?;
+    let as_array = AS_ARRAY
+        .get_or_try_init(py, || Ok::<_, PyErr>(py.import("numpy")?.getattr("asarray")?.unbind()))?;
     let array = as_array.bind(py).call1((arg,)).map_err(|error| {
         let is_ours = error.is_instance_of::<PyValueError>(py)
             || error.is_instance_of::<PyTypeError>(py)
@@ -133,11 +132,7 @@ pub(crate) fn places(arg: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<Vec2>> 
 }
 
 /// Indices of vertices: an array of whole numbers of shape (N, 3), each below `num`.
-pub(crate) fn triangles(
-    arg: &Bound<'_, PyAny>,
-    name: &str,
-    num: usize,
-) -> PyResult<Vec<[u32; 3]>> {
+pub(crate) fn triangles(arg: &Bound<'_, PyAny>, name: &str, num: usize) -> PyResult<Vec<[u32; 3]>> {
     let array = typed::<i64>(arg, name, "iu")?;
     check_shape(name, array.shape(), &[None, Some(3)])?;
     let indices = numbers(&array)?;

@@ -2,9 +2,7 @@
 //! ours is the bottom, so rows are turned over.
 
 use crate::arguments::{choice, mistyped, refused};
-use basrelief::texture::{
-    ColorImage, GrayImage, HeightImage, NormalImage, Wrap, linear_from_srgb,
-};
+use basrelief::texture::{ColorImage, GrayImage, HeightImage, NormalImage, Wrap, linear_from_srgb};
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -47,12 +45,14 @@ impl Picture {
         };
         if !channels.contains(&num_channels) {
             let shape = array.shape();
-            let reason =
-                format!("must be (H, W) or (H, W, channels) with {channels:?} channels, not {shape:?}");
+            let reason = format!(
+                "must be (H, W) or (H, W, channels) with {channels:?} channels, not {shape:?}"
+            );
             return Err(refused(name, reason));
         }
         if ![width, height].iter().all(|side| (1..=MOST_SIDE).contains(side)) {
-            let reason = format!("{width} x {height} texels are not within 1 to {MOST_SIDE} a side");
+            let reason =
+                format!("{width} x {height} texels are not within 1 to {MOST_SIDE} a side");
             return Err(refused(name, reason));
         }
         let dtype = array.dtype();

@@ -1,6 +1,6 @@
 //! Triangles of one material.
 
-use crate::arguments::{places, points, refused, triangles};
+use crate::arguments::{mistyped, places, points, refused, triangles};
 use crate::material::Material;
 use pyo3::prelude::*;
 
@@ -31,9 +31,12 @@ impl Mesh {
         faces: &Bound<'_, PyAny>,
         uv: Option<&Bound<'_, PyAny>>,
         normals: Option<&Bound<'_, PyAny>>,
-        material: Option<Py<Material>>,
+        material: Option<&Bound<'_, PyAny>>,
         name: &str,
     ) -> PyResult<Self> {
+        let material = material.map(|arg| arg.cast::<Material>().map(|m| m.clone().unbind()));
+        let material =
+            material.transpose().map_err(|_| mistyped("material", "must be a Material"))?;
         let positions = points(vertices, "vertices")?;
         let num = positions.len();
         let triangles = triangles(faces, "faces", num)?;

@@ -55,7 +55,6 @@ impl Surface {
     ///
     /// Returns (..., 3) of float32: linear red, green and blue, unlit.
     #[pyo3(signature = (uv, dx, dy, view = None, *, filter = None, threads = None))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of one function")]
     fn colors<'py>(
         &self,
         py: Python<'py>,
@@ -67,7 +66,8 @@ impl Surface {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let filter = settings::filter(filter)?;
-        let [uv, dx, dy] = [floats_of(uv, "uv", 2)?, floats_of(dx, "dx", 2)?, floats_of(dy, "dy", 2)?];
+        let [uv, dx, dy] =
+            [floats_of(uv, "uv", 2)?, floats_of(dx, "dx", 2)?, floats_of(dy, "dy", 2)?];
         let view = view.map(|view| floats_of(view, "view", 3)).transpose()?;
         let shape = &uv.shape()[..uv.ndim() - 1];
         for (name, array) in [("dx", Some(&dx)), ("dy", Some(&dy)), ("view", view.as_ref())] {

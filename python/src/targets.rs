@@ -146,7 +146,10 @@ fn array<'py, T: Element>(
         .cast_into::<PyArrayDyn<T>>()
         .map_err(|_| mistyped(&place, format!("must be a NumPy array of {wanted}")))?;
     if array.shape() != shape {
-        return Err(refused(&place, format!("must be of shape {shape:?}, not {:?}", array.shape())));
+        return Err(refused(
+            &place,
+            format!("must be of shape {shape:?}, not {:?}", array.shape()),
+        ));
     }
     if !array.is_c_contiguous() {
         return Err(refused(&place, "must be C-contiguous; numpy.empty makes such arrays"));
@@ -157,9 +160,8 @@ fn array<'py, T: Element>(
 /// A new array by NumPy itself, which refuses what memory cannot hold with a `MemoryError`.
 fn empty<'py, T: Element>(py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyAny>> {
     static EMPTY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let empty = EMPTY.get_or_try_init(py, || {
-        Ok::<_, PyErr>(py.import("numpy")?.getattr("empty")?.unbind())
-    })?;
+    let empty = EMPTY
+        .get_or_try_init(py, || Ok::<_, PyErr>(py.import("numpy")?.getattr("empty")?.unbind()))?;
     empty.bind(py).call1((PyTuple::new(py, shape)?, dtype::<T>(py)))
 }
 

@@ -90,7 +90,8 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
         colors.resize(colors.len() + block.num_pairs(), [PixelLanes::ZERO; 3]);
     };
     let geometry = geometry::project(scene, &settings);
-    let mut colors = vec![[0.0; 4]; settings.drawn().width as usize * settings.drawn().height as usize];
+    let mut colors =
+        vec![[0.0; 4]; settings.drawn().width as usize * settings.drawn().height as usize];
     let group = |triangle| prepared.group(scene, triangle);
     let drawn = Drawn { scene, settings: &settings, group: Some(&group), follow: None };
     Rasterizer::default().draw(&geometry, drawn, &shade, &|| 0.0, &mut colors);

@@ -46,10 +46,8 @@ impl Renderer {
         };
         geometry.project(scene, &settings);
         let projection = *geometry.projection();
-        let outlines = settings
-            .has_outlines()
-            .then(|| Outlines::new(scene, prepared, &projection))
-            .flatten();
+        let outlines =
+            settings.has_outlines().then(|| Outlines::new(scene, prepared, &projection)).flatten();
         let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
         let hits = Hits { scene, prepared, is_traced, outlines, projection: &projection };
         let mut bands = Band::all(layers, &settings);

@@ -77,7 +77,8 @@ impl Mesh {
             let turned = along(normals, *n);
             (turned * (n.as_dvec3().length() / turned.length())).as_vec3()
         };
-        let Self { name, material, triangles, positions, tex_coords, normals: own, tangents } = self;
+        let Self { name, material, triangles, positions, tex_coords, normals: own, tangents } =
+            self;
         into.name.clone_from(name);
         into.material = *material;
         into.triangles.clone_from(triangles);
