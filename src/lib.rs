@@ -17,7 +17,7 @@
 //! # Ok::<(), basrelief::Error>(())
 //! ```
 //!
-//! [`load::load`] makes a scene of an OBJ file, its MTL files and images.
+//! [`load::load`] makes a scene of an OBJ file, its MTL files and images, or of a glTF file.
 //!
 //! # A filter alone
 //!
@@ -125,10 +125,11 @@
 //! | [`frame`] | pixels and image files |
 //! | [`scene`] | what is drawn: meshes, materials, camera, lights; the built-in scene |
 //! | `decode` | bytes of image files to samples |
-//! | [`load`] | OBJ and MTL files to a scene, within limits |
+//! | [`load`] | OBJ, MTL and glTF files to a scene, within limits |
 //! | `geometry` | model space to screen triangles: projection, culling, clipping, fixed point |
 //! | `raster` | screen triangles to quads: tiles, edge functions, depth, helper lanes |
 //! | `relief` | height field, displacement, march to the hit; what a mip level loses |
+//! | `shell` | the relief of a mesh in the world, and rays that are followed through it |
 //! | `footprint` | formulas (2) and (3), the ellipse of formula (1), all rules for mip levels |
 //! | `light` | how bright a normal is |
 //! | [`filter`] | footprints to colours: all filters; the tables of the far field |
@@ -188,7 +189,7 @@ pub use frame::Frame;
 pub use layers::{Layer, Layers};
 pub use render::{DrawnPixel, Renderer, Stats, render};
 pub use scene::{
-    Camera, Environment, Intrinsics, Light, Material, MaterialMaps, Mesh, PoseAxes, Scene, Sky,
+    Camera, CutOut, Environment, Intrinsics, Light, Material, MaterialMaps, Mesh, PoseAxes, Scene, Sky,
 };
 pub use settings::{
     Derivatives, Ewa, Filter, Formulas, Horizon, Lighting, OptionsMut, RECONSTRUCTION, Rays,

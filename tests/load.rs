@@ -118,7 +118,7 @@ fn made_normals_know_no_seams_and_edges_by_the_crease_angle() {
                vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvt 5 0\nvt 6 0\n";
     let mut files = Files::new(&format!("{obj}{faces}"), "newmtl a\n\nnewmtl b\n");
     for (crease_angle, at_ridge) in [(60.0, [-1.0, 1.0]), (90.0, [0.0, 0.0])] {
-        files.options.crease_angle = crease_angle;
+        files.options.crease_angle = Some(crease_angle);
         let meshes = files.load().scene.meshes;
         for (mesh, x) in meshes.iter().zip(at_ridge) {
             let ridge = mesh.positions.iter().zip(&mesh.normals).filter(|(p, _)| p.y == 1.0);
@@ -129,7 +129,7 @@ fn made_normals_know_no_seams_and_edges_by_the_crease_angle() {
         }
     }
     for crease_angle in [-1.0, 180.5, f32::NAN] {
-        files.options.crease_angle = crease_angle;
+        files.options.crease_angle = Some(crease_angle);
         assert!(
             files.try_load().unwrap_err().to_string().contains("crease_angle"),
             "{crease_angle}"

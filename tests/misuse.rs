@@ -121,13 +121,13 @@ fn settings() -> impl Strategy<Value = Settings> {
     );
     let exposure = prop_oneof![8 => -4.0..4.0_f32, 1 => number()];
     let light = (pick(&[Lighting::Unlit, Lighting::Lit]), exposure);
-    let modes = (filter(), light, any::<[bool; 3]>());
+    let modes = (filter(), light, any::<[bool; 4]>());
     (side(), side(), region, modes, grids).prop_map(
         |(
             width,
             height,
             region,
-            (filter, (lighting, exposure), [parallax, cull_back_faces, has_tone]),
+            (filter, (lighting, exposure), [parallax, silhouette, cull_back_faces, has_tone]),
             (msaa, tile_size),
         )| Settings {
             width,
@@ -135,6 +135,7 @@ fn settings() -> impl Strategy<Value = Settings> {
             region: region.map(|[x, y, width, height]| Region { x, y, width, height }),
             filter,
             parallax,
+            silhouette,
             lighting,
             exposure,
             tone: if has_tone { Tone::Neutral } else { Tone::None },

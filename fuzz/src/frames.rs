@@ -4,7 +4,7 @@ use crate::input::{Input, Number, floor};
 use crate::{check, hold};
 use arbitrary::Arbitrary;
 use basrelief::invariants::{
-    fan_is_hit_once, frame_is_finite, layers_agree, lights_add, no_more_than_the_sky,
+    fan_is_hit_once, frame_is_finite, layers_agree, lights_add, no_more_than_the_sky, outlines_hold,
 };
 use basrelief::{
     Camera, Filter, Intrinsics, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky,
@@ -116,6 +116,44 @@ pub fn layers(bytes: &[u8]) {
             cull_back_faces: options & 8 != 0,
             ..Settings::default()
         };
+        hold(layers_agree(scene, settings));
+    });
+}
+
+/// A lattice of a curved relief of any corners, and a triangle that may lie in it: no sample is
+/// covered where no polygon is, and tiles show nowhere.
+pub fn outlines(bytes: &[u8]) {
+    type Corner = ([Number; 3], [Number; 2]);
+    type Drawn = (Input, [Corner; 16], [[Number; 3]; 3], [Number; 3], u8);
+    check(bytes, |(texture, corners, other, eye, options): Drawn| {
+        let vector = |v: [Number; 3]| Vec3::from(v.map(Number::get));
+        let positions = corners.iter().map(|corner| vector(corner.0)).collect();
+        let tex_coords =
+            corners.iter().map(|corner| Vec2::from(corner.1.map(Number::get))).collect();
+        let quads = (0..9).map(|i| i / 3 * 4 + i % 3);
+        let triangles = quads.flat_map(|i| [[i, i + 1, i + 5], [i, i + 5, i + 4]]).collect();
+        let other = Mesh::new(other.map(vector).to_vec(), vec![], vec![], vec![[0, 1, 2]]);
+        let scene = Scene {
+            meshes: vec![
+                Mesh::new(positions, tex_coords, vec![], triangles),
+                Mesh { material: 1, ..other },
+            ],
+            materials: vec![
+                Material { surface: Some(Arc::new(texture.surface())), ..Material::default() },
+                Material::default(),
+            ],
+            camera: Camera { eye: vector(eye), ..Camera::default() },
+            ..Scene::default()
+        };
+        let settings = Settings {
+            width: 40,
+            height: 24,
+            filter: Filter::Nearest,
+            cull_back_faces: options & 1 == 0,
+            msaa: [1, 4, 8, 4][usize::from(options >> 1 & 3)],
+            ..Settings::default()
+        };
+        hold(outlines_hold(scene.clone(), settings.clone()));
         hold(layers_agree(scene, settings));
     });
 }

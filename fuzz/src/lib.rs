@@ -10,8 +10,8 @@ mod input;
 mod loaders;
 
 pub use filters::{footprint_ellipse, horizon, march, parallax, symmetry, tables, visible_sets};
-pub use frames::{command_line, coverage, layers, render};
-pub use loaders::{load_image, load_mtl, load_obj};
+pub use frames::{command_line, coverage, layers, outlines, render};
+pub use loaders::{load_gltf, load_image, load_mtl, load_obj};
 
 use arbitrary::{Arbitrary, Unstructured};
 

@@ -80,6 +80,8 @@ replays! {
     footprint_ellipse MANY;
     horizon MANY;
     layers MANY;
+    load_gltf MANY;
+    outlines MANY;
     load_image MANY;
     load_mtl MANY;
     load_obj MANY;

@@ -89,6 +89,7 @@ impl Material {
             emissive: rgb(emissive, "emissive", Vec3::ZERO)?,
             maps,
             surface,
+            ..basrelief::Material::default()
         }))
     }
 

@@ -206,9 +206,11 @@ impl Renderer {
             }
         }
         let (tex_coords, triangles) = (old.tex_coords.clone(), old.triangles.clone());
+        let colors = old.colors.clone();
         let new = Mesh {
             name: old.name.clone(),
             material: old.material,
+            colors,
             ..Mesh::new(positions, tex_coords, normals, triangles)
         };
         self.exchange(py, state, &mut vec![(index, new)])?;

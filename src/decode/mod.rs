@@ -38,6 +38,11 @@ pub(crate) struct ImageInfo {
 }
 
 impl ImageInfo {
+    /// Whether texels have an opacity.
+    pub(crate) fn has_opacity(&self) -> bool {
+        self.color.has_alpha()
+    }
+
     /// Whether the format has a single channel of light.
     pub(crate) fn is_gray_format(&self) -> bool {
         !self.color.has_color()
@@ -53,14 +58,21 @@ impl<R: BufRead + Seek> Source for R {}
 
 /// Reads only the head of an image file.
 pub(crate) fn probe(path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
-    contained(path, || {
-        let decoder = decoder(open(path, limits)?, path, limits)?;
-        let (width, height) = decoder.dimensions();
-        Ok(ImageInfo {
-            size: [width, height],
-            num_bytes: decoder.total_bytes(),
-            color: decoder.color_type(),
-        })
+    contained(path, || head(open(path, limits)?, path, limits))
+}
+
+/// Reads only the head of an image file in memory, as [`image_bytes`] does.
+pub(crate) fn probe_bytes(bytes: &[u8], path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
+    contained(path, || head(Box::new(Cursor::new(bytes)), path, limits))
+}
+
+fn head(reader: Bytes, path: &Path, limits: ImageLimits) -> Result<ImageInfo> {
+    let decoder = decoder(reader, path, limits)?;
+    let (width, height) = decoder.dimensions();
+    Ok(ImageInfo {
+        size: [width, height],
+        num_bytes: decoder.total_bytes(),
+        color: decoder.color_type(),
     })
 }
 

@@ -11,7 +11,9 @@
 
 use super::differences::differences;
 use super::rule::FootprintRule;
-use crate::relief::{HeightField, MAX_SLOPE, ViewRays, displacement, finite, march, march_all};
+use crate::relief::{
+    HeightField, MAX_SLOPE, ViewRays, bent, displacement, finite, march, march_all,
+};
 use crate::settings::Derivatives;
 use crate::simd::{PixelLanes, set_bits};
 
@@ -94,6 +96,13 @@ impl Footprints {
         let none = [PixelLanes::ZERO; 2];
         let displacement = displacement(view, field.relief_depth);
         Self { base: *uv, hit: none, dx: none, dy: none, displacement, covered }
+    }
+
+    /// The pixels, before their hits, over a surface that is curved: `bend` is how much `gamma` of the
+    /// view rays grows per repeat along u and v.
+    pub fn bent(self, view: &[PixelLanes; 3], bend: &Uv, field: &HeightField) -> Self {
+        let farther = bent(&self.displacement, view, bend, field.relief_depth);
+        Self { displacement: self.displacement.map(|d| d * farther), ..self }
     }
 
     /// Makes pixels [before their hits](Self::before_hits) what [`Self::of_quads`] makes: the more

@@ -31,6 +31,7 @@ mod layers;
 mod light;
 mod looked_up;
 mod means;
+mod outlines;
 mod pixel;
 mod sets;
 mod symmetry;
@@ -45,6 +46,7 @@ pub use looked_up::{
     flat_tables_give_the_mean, steps_find_the_references_hit, tables_give_texels_in_any_order,
 };
 pub use means::{flat_relief_hides_nothing, linear_in_texture, same_for_same_ellipse};
+pub use outlines::outlines_hold;
 pub use pixel::{
     anisotropy_limit_only_limits, ellipse_is_bounded, filtered, within_texels, work_is_bounded,
 };

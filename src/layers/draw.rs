@@ -6,7 +6,7 @@ use super::place::write_place;
 use super::values::{Band, Layers, ValuesMut};
 use crate::geometry::Projection;
 use crate::raster::{CenterRow, Drawn, Follow};
-use crate::render::{Outlines, Renderer};
+use crate::render::{Outlines, Passages, Renderer};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::simd::set_bits;
@@ -46,9 +46,11 @@ impl Renderer {
         };
         geometry.project(scene, &settings);
         let projection = *geometry.projection();
+        // What names and polygons are of is seen past outlines, too.
         let outlines =
-            settings.has_outlines().then(|| Outlines::new(scene, prepared, &projection)).flatten();
-        let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
+            asked.has_outlines().then(|| Outlines::new(scene, prepared, &projection)).flatten();
+        let passages = Passages::new(scene, &projection, outlines);
+        let follow = passages.as_ref().map(|passages| passages as &dyn Follow);
         let hits = Hits { scene, prepared, is_traced, outlines, projection: &projection };
         let mut bands = Band::all(layers, &settings);
         let group = |triangle| hits::group(scene, triangle);

@@ -29,8 +29,8 @@
 //!
 //! The layers of the *hit* say where the ray meets the relief, those of the *polygon* where it
 //! meets the mesh. They differ where a material has relief and [`Settings::parallax`] is on. Relief
-//! goes down from its polygon: a hit is never before it. Which triangle a pixel sees is decided by
-//! the polygons, as in a frame. A hit lies on the pixel's view ray, as far behind the polygon as
+//! goes down from its polygon: a hit is never before it. Which triangle a pixel sees is as in a
+//! frame: that behind which its ray meets a surface. A hit lies on the pixel's view ray, as far behind the polygon as
 //! the depth of the relief there asks for:
 //!
 //! ```text
@@ -44,7 +44,8 @@
 //!     \________q/                     place eye + R (1 + t S / gamma)
 //! ```
 //!
-//! On a flat mesh this is exact; on a curved one the polygon's own frame is taken along the ray.
+//! On a flat mesh this is exact; on a curved one the ray is followed from triangle to triangle, unless
+//! [`Settings::silhouette`] is off: then the polygon's own frame is taken along it.
 
 mod draw;
 mod hits;

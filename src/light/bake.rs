@@ -79,16 +79,17 @@ impl TextureFrame {
         Some(Beam { to_light: local, slope: if is_finite { slope } else { [0.0; 2] }, intensity })
     }
 
-    /// The beams of suns and a sky on a surface with this frame; `None` where a light comes from
-    /// another direction at each place.
-    pub fn beams(&self, lights: &[Light], sky: &Sky) -> Option<Vec<Beam>> {
+    /// The beams of suns and a sky on a surface with this frame; points come from another direction at
+    /// each place, and have none.
+    pub fn beams(&self, lights: &[Light], sky: &Sky) -> Vec<Beam> {
         let mut beams = Vec::new();
         for light in lights {
-            let Light::Sun { to_light, intensity, angular_size } = *light else { return None };
-            beams.extend(self.sun(to_light.normalize_or_zero(), intensity, angular_size));
+            if let Light::Sun { to_light, intensity, angular_size } = *light {
+                beams.extend(self.sun(to_light.normalize_or_zero(), intensity, angular_size));
+            }
         }
         beams.extend(self.sky(sky));
-        Some(beams)
+        beams
     }
 
     /// Beams from points spread evenly over a sun's disc.

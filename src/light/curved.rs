@@ -47,6 +47,17 @@ pub struct Slant {
     pub along: [PixelLanes; 2],
 }
 
+/// The ways from eight pixels to a point that shines.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Ways {
+    /// From the polygon: along u, along v and off the surface, in world units.
+    pub to_light: Vectors,
+    /// The same along u and v in repeats, and up in the texture's own lengths.
+    pub along: Vectors,
+    /// What both lose on the view ray's way from the polygon to the deepest relief.
+    pub down: [Vectors; 2],
+}
+
 /// The lights on a curved surface. Colours are then lit, but for what is reflected.
 #[derive(Clone, Copy, Debug)]
 pub struct Curved<'a> {
@@ -59,6 +70,10 @@ pub struct Curved<'a> {
     pub frames: &'a [FrameLanes],
     /// How each sun shines on the first vector, on the second, and so on.
     pub slants: &'a [Slant],
+    /// Points that shine: linear RGB at a distance of one world unit.
+    pub points: &'a [Vec3],
+    /// The ways to each of them from the first vector, from the second, and so on.
+    pub ways: &'a [Ways],
 }
 
 /// A sun on a curved surface.
@@ -74,6 +89,11 @@ impl<'a> Curved<'a> {
     /// How a sun shines on a vector of pixels.
     pub(crate) fn slant(&self, vector: usize, sun: usize) -> &'a Slant {
         &self.slants[vector * self.suns.len() + sun]
+    }
+
+    /// The ways from a vector of pixels to a point.
+    pub(crate) fn ways(&self, vector: usize, point: usize) -> &'a Ways {
+        &self.ways[vector * self.points.len() + point]
     }
 
     /// The sky at a picked pixel: vector times 8 plus lane.
@@ -101,11 +121,12 @@ impl<'a> Curved<'a> {
 
     /// Those of so many vectors from one on.
     pub(crate) fn part(&self, first: usize, num: usize) -> Self {
-        let suns = self.suns.len();
+        let (suns, points) = (self.suns.len(), self.points.len());
         Self {
             frames: &self.frames[first..first + num],
             skies: self.skies.get(first..first + num).unwrap_or_default(),
             slants: &self.slants[first * suns..(first + num) * suns],
+            ways: &self.ways[first * points..(first + num) * points],
             ..*self
         }
     }
@@ -134,6 +155,31 @@ impl FrameLanes {
             unit(&[0, 1, 2].map(|i| t[i] - normal[i] * along))
         });
         Self { tangents: *tangents, axes: [u, v, normal], is_back, shown }
+    }
+
+    /// The ways from pixels at `position` to a point. Down to the deepest relief their view rays
+    /// move so many repeats along the texture, and `relief_depth` down.
+    pub fn ways(
+        &self,
+        position: &Vectors,
+        light: Vec3,
+        (moved, relief_depth): ([PixelLanes; 2], f32),
+    ) -> Ways {
+        let way = [0, 1, 2].map(|i| PixelLanes::splat(light[i]) - position[i]);
+        let ([u, v], normal) = (self.tangents, self.axes[2]);
+        let across = cross(&u, &v);
+        let inverse = PixelLanes::ONE / dot(&normal, &across);
+        let repeat = repeat_length(&across);
+        let up = dot(&across, &way) / repeat * inverse;
+        let along = [cross(&v, &normal), cross(&normal, &u)].map(|w| dot(&w, &way) * inverse);
+        let down = repeat * -relief_depth;
+        let ray = [0, 1, 2].map(|i| u[i] * moved[0] + v[i] * moved[1] + normal[i] * down);
+        let in_texture = [moved[0], moved[1], PixelLanes::splat(-relief_depth)];
+        Ways {
+            to_light: self.axes.map(|axis| dot(&axis, &way)),
+            along: [along[0], along[1], up].map(finite),
+            down: [self.axes.map(|axis| dot(&axis, &ray)), in_texture],
+        }
     }
 
     /// Light from a unit direction.

@@ -13,14 +13,25 @@ pub struct LocalLights {
     pub ambient: Vec3,
     /// How much of the sky gets here, 0 to 1: part of `ambient` already.
     pub occlusion: f32,
-    /// Unit direction towards each light, and its intensity here.
-    pub lights: Vec<(Vec3, Vec3)>,
+    /// In the order of the scene.
+    pub lights: Vec<LocalLight>,
     /// Unit direction to the eye.
     pub to_eye: Vec3,
     /// The frame's axes in the world.
     pub axes: [Vec3; 3],
     /// Where what shines is asked for in place of what is diffuse: the square of `a` of a texel.
     pub gloss: Option<f32>,
+}
+
+/// A light as one place of a surface sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalLight {
+    /// Unit direction towards it.
+    pub to_light: Vec3,
+    /// Its intensity here.
+    pub intensity: Vec3,
+    /// Whether it is a point.
+    pub is_point: bool,
 }
 
 /// What light does with a surface: what the diffuse layer shows, and what comes on top of it.
@@ -47,7 +58,8 @@ impl LocalLights {
                     (way.normalize_or_zero(), intensity / way.length_squared().max(1e-12))
                 }
             };
-            (local(to_light), intensity)
+            let is_point = matches!(light, Light::Point { .. });
+            LocalLight { to_light: local(to_light), intensity, is_point }
         });
         let to_eye = local((eye - point.position).normalize_or_zero());
         let (ambient, lights) = (sky.irradiance(normal), lights.collect());
@@ -67,25 +79,26 @@ impl LocalLights {
         } else {
             sky.irradiance(self.in_world(normal)) * self.occlusion
         };
-        self.lights.iter().fold(ambient, |sum, (to_light, intensity)| {
-            sum + *intensity * normal.dot(*to_light).max(0.0)
-        })
+        self.lights
+            .iter()
+            .fold(ambient, |sum, light| sum + light.intensity * normal.dot(light.to_light).max(0.0))
     }
 
-    /// The same lights, of each of which highlights hold what a surface reflects that reflects
+    /// The same suns, of each of which highlights hold what a surface reflects that reflects
     /// `straight` of light that comes straight, as a share of that.
     pub fn glossy(&self, finish: &Finish, fresnel: &Fresnel) -> Self {
         let alpha = reflection::alpha(finish.roughness);
-        let lights = self.lights.iter().map(|(to_light, intensity)| {
-            let half = (*to_light + self.to_eye).normalize_or_zero();
+        let lights = self.lights.iter().filter(|light| !light.is_point).map(|light| {
+            let half = (light.to_light + self.to_eye).normalize_or_zero();
             let straight = fresnel.straight.max(Vec3::splat(1e-6));
-            (*to_light, *intensity * fresnel.at(half.dot(self.to_eye)) / straight)
+            let share = fresnel.at(half.dot(self.to_eye)) / straight;
+            LocalLight { intensity: light.intensity * share, ..*light }
         });
         Self { lights: lights.collect(), gloss: Some(alpha * alpha), ..*self }
     }
 
-    /// What a material of base colour `base` does with the light under a mean normal; of highlights
-    /// what is given, else those of the mean normal.
+    /// What a material of base colour `base` does with the light under a mean normal; of suns'
+    /// highlights what is given, else those of the mean normal.
     pub fn reflected(
         &self,
         mean_normal: Vec3,
@@ -106,12 +119,12 @@ impl LocalLights {
         let mut added = finish.emissive;
         added += fresnel.of_sky(of_sky) * self.mirrored(normal, alpha_squared, sky);
         added += highlights.unwrap_or(Vec3::ZERO);
-        for (to_light, intensity) in self.lights.iter().filter(|_| highlights.is_none()) {
-            let half = (*to_light + self.to_eye).normalize_or_zero();
+        for light in self.lights.iter().filter(|light| light.is_point || highlights.is_none()) {
+            let half = (light.to_light + self.to_eye).normalize_or_zero();
             let share = fresnel.at(half.dot(self.to_eye));
-            let n_l = normal.dot(*to_light);
-            added +=
-                *intensity * share * reflection::lobe(alpha_squared, n_v, n_l, normal.dot(half));
+            let n_l = normal.dot(light.to_light);
+            let lobe = reflection::lobe(alpha_squared, n_v, n_l, normal.dot(half));
+            added += light.intensity * share * lobe;
         }
         let passed = 1.0 - Fresnel::of_dielectric(finish).of_sky(of_sky).x;
         Reflected { passed, added }

@@ -23,9 +23,9 @@ mod surface_point;
 mod vectors;
 
 pub use bake::{Beam, TextureFrame, baked, glossy};
-pub use curved::{Curved, CurvedSun, FrameLanes, LinearSky, Slant};
+pub use curved::{Curved, CurvedSun, FrameLanes, LinearSky, Slant, Ways};
 pub use disc::{Disc, spiral};
 pub use horizons::{Horizons, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE};
-pub use local::{LocalLights, Reflected};
+pub use local::{LocalLight, LocalLights, Reflected};
 pub use surface_point::{SurfacePoint, unit_axes};
 pub use vectors::{Vectors, cross, repeat_length};

@@ -1,27 +1,34 @@
 //! All that a scene is read from, put together.
 
 use super::files::Folder;
+use super::gltf;
+use super::images::Images;
 use super::lines::Source;
+use super::model::Model;
 use super::mtl::{MtlFiles, MtlMaterial};
 use super::obj::{self, locate};
 use super::options::{LoadOptions, MaterialOptions};
-use super::plan::{Plan, Planner};
+use super::plan::{Numbers, Plan, Planner};
 use super::stage::{LoadStage, Report};
+use super::surfaces::Built;
 use super::{models, surfaces};
 use crate::decode::open_regular;
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Light, Material, MaterialMaps, Mesh, Scene, Sky};
+use crate::scene::{Camera, Light, Material, Mesh, Scene, Sky};
 use glam::Vec3;
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashSet};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
+/// The crease angle of an OBJ file where nothing says otherwise, in degrees.
+const CREASE: f32 = 60.0;
+
 /// A scene and what its reader should know of how it was read.
 #[derive(Clone, Debug, Default)]
 pub struct Loaded {
-    /// The scene. Its camera frames the bounding box; one light shines over the viewer's left
-    /// shoulder.
+    /// The scene. Its camera is the file's own or frames the bounding box; its lights are those of
+    /// the file, or one that shines over the viewer's left shoulder.
     pub scene: Scene,
     /// What was chosen, such as which image serves as the height map: one line each.
     pub choices: Vec<String>,
@@ -29,7 +36,8 @@ pub struct Loaded {
     pub warnings: Vec<String>,
 }
 
-/// Reads an OBJ file with its MTL files and images.
+/// Reads an OBJ file with its MTL files and images, or a glTF file with its buffers and images
+/// ([`is_gltf`](super::is_gltf) tells them by their names).
 ///
 /// A missing MTL or texture that a file names is a warning, and the plain colour is drawn. Meshes
 /// without texture coordinates are drawn in their plain colour too. Normals are made where the file
@@ -37,8 +45,8 @@ pub struct Loaded {
 ///
 /// # Errors
 /// Names the file, and the line where one is wrong, or the option or limit that refuses it.
-pub fn load(obj: &Path, options: &LoadOptions) -> Result<Loaded> {
-    load_reporting(obj, options, &|_| ())
+pub fn load(model: &Path, options: &LoadOptions) -> Result<Loaded> {
+    load_reporting(model, options, &|_| ())
 }
 
 /// [`load`] that tells `report`, from any thread, what it is doing.
@@ -46,12 +54,18 @@ pub fn load(obj: &Path, options: &LoadOptions) -> Result<Loaded> {
 /// # Errors
 /// As [`load`].
 pub fn load_reporting(
-    obj: &Path,
+    model: &Path,
     options: &LoadOptions,
     report: &(dyn Fn(LoadStage) + Sync),
 ) -> Result<Loaded> {
-    open_regular(obj)?;
-    load_from(&ObjFile(obj), &Folder::of(obj, options.allow_outside), options, report)
+    open_regular(model)?;
+    let folder = Folder::of(model, options.allow_outside);
+    if !gltf::is_gltf(model) {
+        return load_from(&ObjFile(model), &folder, options, report);
+    }
+    options.check()?;
+    report(LoadStage::Model);
+    put_together(gltf::read(model, &folder, options)?, options, report)
 }
 
 struct ObjFile<'a>(&'a Path);
@@ -83,38 +97,55 @@ pub(super) fn load_from(
             .unwrap_or_else(|| Error::file(source.path(), "has numbers out of range")));
     }
     models::remark_placements(&materials, &mut warnings);
-    let meshes = models::finish(meshes, &materials, options.crease_angle)
+    let meshes = models::finish(meshes, &materials, options.crease_angle.unwrap_or(CREASE))
         .map_err(|reason| Error::file(source.path(), reason))?;
     if meshes.iter().any(|mesh| mesh.material == materials.len()) {
         materials.push(MtlMaterial { name: "none".into(), ..MtlMaterial::default() });
     }
-    check_names(options, &materials)?;
-    let plans = plans(&meshes, &materials, folder, options)?;
-    warnings.extend(plans.warnings);
-    let surfaces =
-        surfaces::build(&plans.plans.iter().flatten().cloned().collect(), options, report)?;
-    let materials = materials.iter().zip(&plans.plans).map(|(material, plan)| {
-        let built = plan.as_ref().and_then(|plan| surfaces.get(plan)).cloned();
-        let (surface, maps) = built.map(|built| (built.surface, built.maps)).unzip();
+    check_names(options, materials.iter().map(|material| material.name.as_str()))?;
+    let Plans { plans, choices, warnings: of_plans } = plans(&meshes, &materials, folder, options)?;
+    warnings.extend(of_plans);
+    let materials = materials.iter().zip(&plans).map(|(material, plan)| {
         let own = options.materials.get(&material.name).cloned().unwrap_or_default();
-        let maps = maps.unwrap_or_default();
-        Material { surface, ..plain_material(material, &own.or(&options.all), maps) }
+        let numbers = plan.as_ref().map_or_else(Numbers::default, |plan| plan.numbers.clone());
+        (plain_material(material, &own.or(&options.all), &numbers), plan.clone())
+    });
+    let materials = materials.collect();
+    let (images, camera, lights) = (Images::default(), None, Vec::new());
+    let model = Model { meshes, materials, images, camera, lights, choices, warnings };
+    put_together(model, options, report)
+}
+
+/// Reads the images of a model and makes a scene of it.
+pub(super) fn put_together(model: Model, options: &LoadOptions, report: &Report) -> Result<Loaded> {
+    let Model { meshes, materials, images, camera, lights, choices, mut warnings } = model;
+    check_names(options, materials.iter().map(|(material, _)| material.name.as_str()))?;
+    let plans = materials.iter().filter_map(|(_, plan)| plan.clone()).collect();
+    let surfaces = surfaces::build(&plans, &images, options, report)?;
+    let materials = materials.into_iter().map(|(material, plan)| {
+        let built = plan.and_then(|plan| surfaces.get(&plan)).cloned();
+        let Some(Built { surface, maps, cut_out }) = built else { return material };
+        Material { surface: Some(surface), maps, cut_out, ..material }
     });
     let mut scene = Scene { meshes, materials: materials.collect(), ..Scene::default() };
     frame(&mut scene, options.aspect);
+    scene.camera = camera.unwrap_or(scene.camera);
+    if !lights.is_empty() {
+        scene.lights = lights;
+    }
     scene.validate()?;
     let mut seen = HashSet::new();
     warnings.retain(|warning| seen.insert(warning.clone()));
-    Ok(Loaded { scene, choices: plans.choices, warnings })
+    Ok(Loaded { scene, choices, warnings })
 }
 
 /// Refuses options for a material that is not there, which would be lost in silence.
-fn check_names(options: &LoadOptions, materials: &[MtlMaterial]) -> Result<()> {
-    let is_there = |name: &String| materials.iter().any(|material| material.name == *name);
+fn check_names<'a>(options: &LoadOptions, materials: impl Iterator<Item = &'a str>) -> Result<()> {
+    let names: Vec<&str> = materials.collect();
+    let is_there = |name: &String| names.contains(&name.as_str());
     let Some(missing) = options.materials.keys().find(|name| !is_there(name)) else {
         return Ok(());
     };
-    let names: Vec<&str> = materials.iter().map(|material| material.name.as_str()).collect();
     let reason = format!("is not there; the model's materials are {}", names.join(", "));
     Err(Error::scene(format!("material {missing}"), reason))
 }
@@ -145,9 +176,9 @@ fn plans(
     Ok(Plans { plans, choices, warnings })
 }
 
-/// A material without its surface. A texture takes the place of the file's number of metal or
+/// A material without its surface and textures. A texture takes the place of the file's number of metal or
 /// roughness; what it sends out is multiplied with `Ke`, where that is not black.
-fn plain_material(from: &MtlMaterial, given: &MaterialOptions, maps: MaterialMaps) -> Material {
+fn plain_material(from: &MtlMaterial, given: &MaterialOptions, maps: &Numbers) -> Material {
     // Beyond these bounds a number is a mistake in the file that need not stop the picture.
     let color = |c: [f32; 3]| Vec3::from_array(c).clamp(Vec3::ZERO, Vec3::splat(1e6));
     let unit = |number: f32| number.clamp(0.0, 1.0);
@@ -166,8 +197,7 @@ fn plain_material(from: &MtlMaterial, given: &MaterialOptions, maps: MaterialMap
         metallic: given.metallic.or(metallic).unwrap_or(fallback.metallic),
         roughness: given.roughness.or(roughness).unwrap_or(fallback.roughness),
         emissive: given.emissive.or(emissive).unwrap_or(fallback.emissive),
-        maps,
-        surface: None,
+        ..fallback
     }
 }
 

@@ -1,8 +1,9 @@
 //! The loaders on bytes in memory, for fuzzing: what a hostile file reaches, without the file
 //! system.
 
-use super::assemble::{Loaded, load_from};
+use super::assemble::{Loaded, load_from, put_together};
 use super::files::Folder;
+use super::gltf;
 use super::lines::Source;
 use super::mtl::MtlFiles;
 use super::options::LoadOptions;
@@ -18,6 +19,16 @@ use std::path::Path;
 #[doc(hidden)]
 pub fn load_obj_bytes(bytes: &[u8], options: &LoadOptions) -> Result<Loaded> {
     load_from(&ObjBytes(bytes), &Folder::none(), options, &|_| ())
+}
+
+/// Reads a glTF or GLB file from memory; the files that it names count as missing.
+///
+/// # Errors
+/// As [`load`](super::load()).
+#[doc(hidden)]
+pub fn load_gltf_bytes(bytes: &[u8], options: &LoadOptions) -> Result<Loaded> {
+    options.check()?;
+    put_together(gltf::read_bytes(bytes, &Folder::none(), options)?, options, &|_| ())
 }
 
 /// Reads an MTL file from memory with all its texture lines, and returns its warnings.

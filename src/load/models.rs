@@ -30,7 +30,7 @@ fn mesh(model: tobj::Model, num_materials: usize) -> Mesh {
     }
     let triangles = mesh.indices.as_chunks().0.to_vec();
     let material = mesh.material_id.filter(|&i| i < num_materials).unwrap_or(num_materials);
-    Mesh { name, material, positions, tex_coords, normals, triangles, tangents: Vec::new() }
+    Mesh { name, material, positions, tex_coords, normals, triangles, ..Mesh::default() }
 }
 
 /// Whether a position, coordinate or normal is not finite or too large.

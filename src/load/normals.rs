@@ -66,6 +66,7 @@ fn set_normals(mesh: &mut Mesh, of_corners: &[Vec3]) {
             *copies.entry((*corner, normal.to_array().map(f32::to_bits))).or_insert_with(|| {
                 mesh.positions.push(mesh.positions[vertex]);
                 mesh.tex_coords.extend(mesh.tex_coords.get(vertex).copied());
+                mesh.colors.extend(mesh.colors.get(vertex).copied());
                 mesh.normals.push(normal);
                 mesh.normals.len() as u32 - 1
             });

@@ -47,13 +47,13 @@ pub struct MaterialOptions {
     pub emissive_map: Option<PathBuf>,
     /// Which end of the height map is high; `None`: white.
     pub height_sense: Option<HeightSense>,
-    /// Relief depth in texture repeats, 0 to 1; `None`: `-bm` of the height map in the MTL, else
-    /// 0.05.
+    /// Relief depth in texture repeats, 0 to 1; `None`: `-bm` of the height map in the MTL,
+    /// `basrelief_depth` in the extras of a glTF material, else 0.05.
     pub relief_depth: Option<f32>,
     /// Where the normal map's green points; `None`: up.
     pub normal_y: Option<NormalY>,
-    /// What lies beyond a texture's edges; `None`: clamp where the MTL says `-clamp on`, else
-    /// repeat.
+    /// What lies beyond a texture's edges; `None`: clamp where the MTL says `-clamp on`, what a glTF
+    /// sampler says, else repeat.
     pub wrap: Option<Wrap>,
     /// What multiplies the colour map, linear RGB, 0 to 1e6; `None`: `Kd`, else 1.
     pub base_color: Option<Vec3>,
@@ -117,9 +117,10 @@ pub struct LoadOptions {
     /// pictures show all of it, too. Default: 1.
     pub aspect: f32,
     /// Where normals are made, faces that meet at a sharper angle than this keep their own:
-    /// degrees, 0 (every edge is sharp) to 180 (none is). Default: 60.
-    pub crease_angle: f32,
-    /// Whether files that lie outside the OBJ's folder, also by a link, may be read when a material
+    /// degrees, 0 (every edge is sharp) to 180 (none is). Default: `None`, 60 of an OBJ file, and 0
+    /// of glTF, which demands it.
+    pub crease_angle: Option<f32>,
+    /// Whether files that lie outside the model's folder, also by a link, may be read when the model
     /// names them. Files that the caller names may lie anywhere. Default: `false`.
     pub allow_outside: bool,
     /// Most texels a side of an image, 1 to 32768. Default: 32768.
@@ -128,7 +129,8 @@ pub struct LoadOptions {
     /// by an estimate from the heads of the files: about 60 bytes a texel. Default: 1024, room for
     /// one material of 4096 x 4096 texels.
     pub max_image_mib: u32,
-    /// Most triangles, and most `v`, `vt` and `vn` lines each. Default: 50 million.
+    /// Most triangles, and most `v`, `vt` and `vn` lines each; of glTF, most triangles and vertices
+    /// of all that its nodes place. Default: 50 million.
     pub max_triangles: u64,
     /// Most texture files. Default: 1024.
     pub max_textures: u32,
@@ -141,7 +143,7 @@ impl Default for LoadOptions {
             materials: BTreeMap::new(),
             keep_normals: false,
             aspect: 1.0,
-            crease_angle: 60.0,
+            crease_angle: None,
             allow_outside: false,
             max_image_side: 32768,
             max_image_mib: 1024,
@@ -160,7 +162,7 @@ impl LoadOptions {
         }) {
             return Err(Error::setting("relief_depth", "must be within 0 to 1 texture repeats"));
         }
-        if !(0.0..=180.0).contains(&self.crease_angle) {
+        if self.crease_angle.is_some_and(|angle| !(0.0..=180.0).contains(&angle)) {
             return Err(Error::setting("crease_angle", "must be within 0 to 180 degrees"));
         }
         if !(self.aspect > 0.0 && self.aspect.is_finite()) {

@@ -4,18 +4,21 @@
 //! gray. A coloured bump is a normal map, as `norm`/`map_Kn` is. Every choice is put into words.
 
 use super::files::Folder;
+use super::given::{self, Given};
 use super::mtl::{MtlMaterial, TextureRef};
 use super::options::{HeightSense, LoadOptions, MaterialOptions, NormalY};
-use crate::decode::{self, Channel, open_regular};
-use crate::error::{Error, Result};
+use crate::decode::{self, Channel};
+use crate::error::Result;
 use crate::texture::Wrap;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Relief depth in texture repeats where nothing says otherwise.
-const DEFAULT_DEPTH: f32 = 0.05;
+pub(super) const DEFAULT_DEPTH: f32 = 0.05;
+
+/// The opacity at which surfaces are cut out where nothing says otherwise.
+pub(super) const CUT: f32 = 0.5;
 
 /// In the order of plans.
 pub(super) const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
@@ -23,7 +26,7 @@ pub(super) const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
 /// An image file and how it is read.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Map {
-    /// Absolute and without links.
+    /// Absolute and without links; or the name of an image in the model's own bytes.
     pub(super) path: PathBuf,
     pub(super) kind: Kind,
 }
@@ -45,12 +48,18 @@ pub(super) enum Kind {
         channel: Option<Channel>,
         range: [u32; 2],
     },
+    /// What is there of a surface: as `Gray`, at and above a threshold.
+    Opacity {
+        channel: Option<Channel>,
+        range: [u32; 2],
+        threshold: u32,
+    },
 }
 
 impl Kind {
     /// Bytes of a texel once it is read.
     pub(super) fn num_bytes(&self) -> u64 {
-        if matches!(self, Self::Height { .. } | Self::Gray { .. }) { 2 } else { 6 }
+        if matches!(self, Self::Color | Self::Normal { .. }) { 6 } else { 2 }
     }
 }
 
@@ -61,13 +70,15 @@ pub(super) struct Numbers {
     pub(super) roughness: Option<Map>,
     pub(super) occlusion: Option<Map>,
     pub(super) emissive: Option<Map>,
+    /// Of cut-outs, which are there without light, too.
+    pub(super) opacity: Option<Map>,
 }
 
 impl Numbers {
     /// Those that there are.
     pub(super) fn all(&self) -> impl Iterator<Item = &Map> {
-        let Self { metallic, roughness, occlusion, emissive } = self;
-        [metallic, roughness, occlusion, emissive].into_iter().flatten()
+        let Self { metallic, roughness, occlusion, emissive, opacity } = self;
+        [metallic, roughness, occlusion, emissive, opacity].into_iter().flatten()
     }
 }
 
@@ -86,6 +97,17 @@ pub(super) struct Plan {
 }
 
 impl Plan {
+    /// A plan of the maps that there are.
+    pub(super) fn new(
+        [albedo, height, normal]: [Option<Map>; 3],
+        numbers: Numbers,
+        wrap: Wrap,
+        relief_depth: f32,
+    ) -> Self {
+        let wrap = WRAPS.iter().position(|w| *w == wrap).unwrap_or_default();
+        Self { albedo, height, normal, numbers, wrap, depth: relief_depth.to_bits() }
+    }
+
     /// The maps that there are.
     pub(super) fn maps(&self) -> impl Iterator<Item = &Map> {
         self.surface_maps().chain(self.numbers.all())
@@ -103,6 +125,11 @@ impl Plan {
     /// Index into [`WRAPS`].
     pub(super) fn wrap_index(&self) -> usize {
         self.wrap
+    }
+
+    /// Whether normals are those of a map, on a surface without relief.
+    pub(super) fn has_only_normals(&self) -> bool {
+        self.normal.is_some() && (self.height.is_none() || self.relief_depth() == 0.0)
     }
 
     /// Whether there is anything to take normals from.
@@ -123,9 +150,7 @@ impl Plan {
 pub(super) struct Planner<'a> {
     options: &'a LoadOptions,
     folder: &'a Folder,
-    /// What the caller says, with absolute paths: of all materials, and of single ones by name.
-    of_all: MaterialOptions,
-    of_one: BTreeMap<&'a str, MaterialOptions>,
+    given: Given<'a>,
     /// Whether the image behind a `bump` is gray.
     is_gray: BTreeMap<PathBuf, bool>,
     pub(super) choices: Vec<String>,
@@ -143,41 +168,16 @@ impl<'a> Planner<'a> {
         folder: &'a Folder,
         materials: &[&MtlMaterial],
     ) -> Result<Self> {
-        let of_all = with_real_paths(&options.all)?;
-        let of_one = options.materials.iter();
-        let of_one =
-            of_one.map(|(name, own)| Ok((name.as_str(), with_real_paths(own)?.or(&of_all))));
-        let of_one = of_one.collect::<Result<_>>()?;
-        let (is_gray, choices, warnings) = Default::default();
-        let mut planner = Self { options, folder, of_all, of_one, is_gray, choices, warnings };
-        planner.note("every material", &options.all);
-        options
-            .materials
-            .iter()
-            .for_each(|(name, own)| planner.note(&format!("material {name}"), own));
+        let given = Given::new(options)?;
+        let (is_gray, warnings) = Default::default();
+        let choices = given::choices(options);
+        let mut planner = Self { options, folder, given, is_gray, choices, warnings };
         planner.look_at_bumps(materials)?;
         Ok(planner)
     }
 
     fn given(&self, material: &MtlMaterial) -> &MaterialOptions {
-        self.of_one.get(material.name.as_str()).unwrap_or(&self.of_all)
-    }
-
-    /// Notes the files that the caller names.
-    fn note(&mut self, whose: &str, given: &MaterialOptions) {
-        for (what, path) in [
-            ("colour", &given.albedo),
-            ("height", &given.height),
-            ("normals", &given.normal),
-            ("metal", &given.metallic_map),
-            ("roughness", &given.roughness_map),
-            ("occlusion", &given.occlusion_map),
-            ("emission", &given.emissive_map),
-        ] {
-            if let Some(path) = path {
-                self.choices.push(format!("{whose}: {what} from {}", path.display()));
-            }
-        }
+        self.given.of(&material.name)
     }
 
     /// Finds out which images of `bump` lines are gray, where that decides what they serve as.
@@ -237,9 +237,8 @@ impl<'a> Planner<'a> {
         let normal = self.normal(material, bump_normal)?;
         let fallback = if albedo_clamped || height_clamped { Wrap::Clamp } else { Wrap::Repeat };
         let wrap = self.given(material).wrap.unwrap_or(fallback);
-        let wrap = WRAPS.iter().position(|w| *w == wrap).unwrap_or_default();
         let numbers = self.numbers(material)?;
-        let plan = Plan { albedo, height, normal, numbers, wrap, depth: depth.to_bits() };
+        let plan = Plan::new([albedo, height, normal], numbers, wrap, depth);
         let has_maps = plan.maps().next().is_some();
         Ok(has_maps.then_some(plan))
     }
@@ -270,10 +269,28 @@ impl<'a> Planner<'a> {
         Ok((found.map(|(_, path)| Map { path, kind: Kind::Color }), is_clamped))
     }
 
-    /// Textures of a material's numbers, which only lighting asks for.
+    /// The opacity of cut-outs: the image's, or its brightness where it has none.
+    fn opacity(&mut self, material: &MtlMaterial) -> Result<Option<Map>> {
+        let name = material.name.escape_debug();
+        let opacity = material.opacity.unwrap_or(1.0).clamp(0.0, 1.0);
+        let Some((line, path)) = self.found(material.opacity_map.as_ref())? else {
+            if opacity < 1.0 {
+                self.warnings.push(format!("material {name}: d {opacity} is drawn opaque"));
+            }
+            return Ok(None);
+        };
+        let has_opacity = decode::probe(&path, self.options.image_limits())?.has_opacity();
+        let channel = line.texture.channel.or(has_opacity.then_some(Channel::Matte));
+        let [base, gain] = line.texture.range.map(|number| number * opacity);
+        let (range, threshold) = ([base, gain].map(f32::to_bits), CUT.to_bits());
+        Ok(Some(Map { path, kind: Kind::Opacity { channel, range, threshold } }))
+    }
+
+    /// Textures of a material's numbers; most are only asked for by lighting.
     fn numbers(&mut self, material: &MtlMaterial) -> Result<Numbers> {
+        let opacity = self.opacity(material)?;
         if !self.options.keep_normals {
-            return Ok(Numbers::default());
+            return Ok(Numbers { opacity, ..Numbers::default() });
         }
         let given = self.given(material).clone();
         let mut of = |given: Option<PathBuf>, line: Option<&TextureRef>, is_gray: bool| {
@@ -291,6 +308,7 @@ impl<'a> Planner<'a> {
             roughness: of(given.roughness_map, material.roughness_map.as_ref(), true)?,
             occlusion: of(given.occlusion_map, None, true)?,
             emissive: of(given.emissive_map, material.emissive_map.as_ref(), false)?,
+            opacity,
         })
     }
 
@@ -352,7 +370,7 @@ impl<'a> Planner<'a> {
     }
 }
 
-fn height_kind(
+pub(super) fn height_kind(
     sense: HeightSense,
     channel: Option<Channel>,
     [base, gain]: [f32; 2],
@@ -361,19 +379,4 @@ fn height_kind(
     let is_deep = sense == HeightSense::WhiteDeep;
     let range = if is_deep != is_turned { [1.0 - base, -gain] } else { [base, gain] };
     Kind::Height { channel, range: range.map(f32::to_bits) }
-}
-
-/// `given` with its files' absolute paths.
-fn with_real_paths(given: &MaterialOptions) -> Result<MaterialOptions> {
-    let mut real = given.clone();
-    for path in real.files_mut().into_iter().flatten() {
-        *path = real_path(path)?;
-    }
-    Ok(real)
-}
-
-/// The path of a file that the caller named.
-fn real_path(path: &Path) -> Result<PathBuf> {
-    open_regular(path)?;
-    fs::canonicalize(path).map_err(|error| Error::caused(path, error))
 }

@@ -4,12 +4,13 @@
 //! different plan becomes one [`Surface`], small ones in parallel too. What all of that needs is
 //! estimated from the heads of the files before any is decoded.
 
+use super::images::Images;
 use super::options::LoadOptions;
 use super::plan::{Kind, Map, Numbers, Plan, WRAPS};
 use super::stage::{Counter, LoadStage, Report};
-use crate::decode::{self, ImageInfo, ImageLimits, Samples};
+use crate::decode::{ImageInfo, Samples};
 use crate::error::{Error, Result};
-use crate::scene::MaterialMaps;
+use crate::scene::{CutOut, MaterialMaps};
 use crate::texture::{
     ColorImage, GrayImage, HeightImage, NormalImage, Surface, SurfaceMaps, Texture,
 };
@@ -42,6 +43,7 @@ enum MapImage {
 pub(super) struct Built {
     pub(super) surface: Arc<Surface>,
     pub(super) maps: MaterialMaps,
+    pub(super) cut_out: Option<CutOut>,
 }
 
 /// Textures of materials' numbers; materials share those of one map and index into [`WRAPS`].
@@ -53,6 +55,7 @@ type Textures = BTreeMap<(Map, usize), Arc<Texture>>;
 /// Names the image that cannot be read or the limit that is exceeded.
 pub(super) fn build(
     plans: &BTreeSet<Plan>,
+    images: &Images,
     options: &LoadOptions,
     report: &Report,
 ) -> Result<BTreeMap<Plan, Built>> {
@@ -60,13 +63,14 @@ pub(super) fn build(
     options.check_num_textures(files.len())?;
     let limits = options.image_limits();
     let paths: Vec<&Path> = files.keys().copied().collect();
-    let infos: Vec<_> = paths.par_iter().map(|path| decode::probe(path, limits)).collect();
+    let infos: Vec<_> = paths.par_iter().map(|path| images.probe(path, limits)).collect();
     let infos: Vec<ImageInfo> = infos.into_iter().collect::<Result<_>>()?;
     let infos = paths.iter().copied().zip(infos).collect();
     check_memory(plans, &infos, options)?;
     let counter = Counter::new(files.len(), |done, num| LoadStage::Images { done, num }, report);
     let decode_all = |(path, kinds): (&&Path, &BTreeSet<&Kind>)| {
-        decode_all(path, kinds, limits).inspect(|_| counter.add_one())
+        let samples = images.samples(path, limits);
+        samples.map(|samples| maps_of(path, kinds, &samples)).inspect(|_| counter.add_one())
     };
     let decoded: Vec<_> = files.par_iter().map(decode_all).collect();
     let mut maps = BTreeMap::new();
@@ -94,7 +98,8 @@ pub(super) fn build(
             let maps = SurfaceMaps { least_size: least_size(plan, &infos), ..maps };
             let surface = Arc::new(Surface::new(maps)?);
             counter.add_one();
-            Ok((plan.clone(), Built { surface, maps: material_maps(plan, &textures) }))
+            let maps = material_maps(plan, &textures);
+            Ok((plan.clone(), Built { surface, maps, cut_out: cut_out(plan, &textures) }))
         });
         // The first refusal in the order of the plans, whichever thread is first.
         let built: Vec<Result<_>> = built.collect();
@@ -113,25 +118,40 @@ fn textures(plans: &BTreeSet<Plan>, images: &mut BTreeMap<Map, MapImage>) -> Res
         .collect();
     let mut textures = Textures::new();
     for (map, wrap) in wanted {
-        let texture = match images.get(&map).cloned() {
-            Some(MapImage::Gray(image)) => Texture::gray(image, WRAPS[wrap])?,
-            Some(MapImage::Color(image)) => Texture::color(image, WRAPS[wrap])?,
+        let texture = match (images.get(&map).cloned(), &map.kind) {
+            (Some(MapImage::Gray(image)), Kind::Opacity { threshold, .. }) => {
+                let threshold = f32::from_bits(*threshold);
+                if image.texels.iter().all(|texel| f32::from(*texel) / 65535.0 >= threshold) {
+                    // Without holes it need not be asked.
+                    continue;
+                }
+                Texture::opacity(image, WRAPS[wrap], threshold)?
+            }
+            (Some(MapImage::Gray(image)), _) => Texture::gray(image, WRAPS[wrap])?,
+            (Some(MapImage::Color(image)), _) => Texture::color(image, WRAPS[wrap])?,
             _ => continue,
         };
         textures.insert((map, wrap), Arc::new(texture));
     }
-    images.retain(|map, _| !matches!(map.kind, Kind::Gray { .. }));
+    images.retain(|map, _| !matches!(map.kind, Kind::Gray { .. } | Kind::Opacity { .. }));
     Ok(textures)
 }
 
 fn material_maps(plan: &Plan, textures: &Textures) -> MaterialMaps {
-    let Numbers { metallic, roughness, occlusion, emissive } = &plan.numbers;
+    let Numbers { metallic, roughness, occlusion, emissive, .. } = &plan.numbers;
     let [metallic, roughness, occlusion, emissive] = [metallic, roughness, occlusion, emissive]
         .map(|map| {
             let key = (map.clone()?, plan.wrap_index());
             textures.get(&key).cloned()
         });
     MaterialMaps { metallic, roughness, occlusion, emissive }
+}
+
+/// The holes of a plan's surface, if it has any.
+fn cut_out(plan: &Plan, textures: &Textures) -> Option<CutOut> {
+    let map = plan.numbers.opacity.as_ref()?;
+    let opacity = textures.get(&(map.clone(), plan.wrap_index())).cloned()?;
+    Some(CutOut { opacity })
 }
 
 /// Texels that a surface must have so that nothing of its textures is lost.
@@ -199,15 +219,9 @@ fn check_memory(
     Ok(())
 }
 
-fn decode_all(
-    path: &Path,
-    kinds: &BTreeSet<&Kind>,
-    limits: ImageLimits,
-) -> Result<Vec<(Map, MapImage)>> {
-    let samples = decode::samples(path, limits)?;
-    let map =
-        |kind: &Kind| (Map { path: path.into(), kind: kind.clone() }, convert(&samples, kind));
-    Ok(kinds.iter().map(|kind| map(kind)).collect())
+fn maps_of(path: &Path, kinds: &BTreeSet<&Kind>, samples: &Samples) -> Vec<(Map, MapImage)> {
+    let map = |kind: &Kind| (Map { path: path.into(), kind: kind.clone() }, convert(samples, kind));
+    kinds.iter().map(|kind| map(kind)).collect()
 }
 
 fn convert(samples: &Samples, kind: &Kind) -> MapImage {
@@ -216,7 +230,7 @@ fn convert(samples: &Samples, kind: &Kind) -> MapImage {
         Kind::Height { channel, range } => {
             MapImage::Height(samples.gray(channel, range.map(f32::from_bits)).into())
         }
-        Kind::Gray { channel, range } => {
+        Kind::Gray { channel, range } | Kind::Opacity { channel, range, .. } => {
             MapImage::Gray(samples.gray(channel, range.map(f32::from_bits)))
         }
         Kind::Normal { strength, is_green_down } => {

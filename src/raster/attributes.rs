@@ -17,6 +17,9 @@ use glam::Vec3;
 /// tangents in f32 are not known better.
 const FLAT: f64 = 1e-6;
 
+/// Least difference of normals, squared, that is no rounding.
+const LEAST_TURN: f64 = 1e-10;
+
 /// Eight vectors of three components.
 type Vectors = [f64x8; 3];
 
@@ -34,6 +37,7 @@ pub(super) struct PlaneMaker<'a> {
     scene: &'a Scene,
     is_lit: bool,
     parallax: bool,
+    has_outlines: bool,
 }
 
 impl AttributePlanes {
@@ -55,7 +59,8 @@ impl AttributePlanes {
 impl<'a> PlaneMaker<'a> {
     pub(super) fn new(geometry: &'a Geometry, scene: &'a Scene, settings: &Settings) -> Self {
         let is_lit = settings.lighting == Lighting::Lit;
-        Self { projection: geometry.projection(), scene, is_lit, parallax: settings.parallax }
+        let (parallax, has_outlines) = (settings.parallax, settings.has_outlines());
+        Self { projection: geometry.projection(), scene, is_lit, parallax, has_outlines }
     }
 
     /// Sets the planes of the triangles given by the indices of their mesh and in it.
@@ -98,6 +103,7 @@ impl<'a> PlaneMaker<'a> {
                 if is_textured { [0, 1].map(|i| one(&uv[i], lane)) } else { [Plane::default(); 2] };
             // Straight down, unless a view is found below.
             planes.view = [Plane::default(), Plane::default(), planes.inverse_w];
+            planes.bend = [0.0; 2];
         }
         // One lane with relief is reason enough to find all eight; flat ones keep what they have.
         if corners.iter().any(|corners| self.needs_view(corners)) {
@@ -108,8 +114,15 @@ impl<'a> PlaneMaker<'a> {
             let view = [0, 1, 2].map(|axis| basis.plane(views.map(|view| view[axis])));
             let planes =
                 planes.iter_mut().enumerate().filter(|(lane, _)| self.needs_view(&corners[*lane]));
-            planes.for_each(|(lane, planes)| planes.view = [0, 1, 2].map(|i| one(&view[i], lane)));
+            let bend = bends(&normals, &tex_coords, &views.map(|view| view[2]));
+            planes.for_each(|(lane, planes)| {
+                planes.view = [0, 1, 2].map(|i| one(&view[i], lane));
+                if self.has_outlines {
+                    planes.bend = bend.map(|lanes| lanes.as_array()[lane] as f32);
+                }
+            });
         }
+        fill_tint(planes, &basis, corners);
         if self.is_lit {
             fill_lit(planes, &basis, corners);
         } else {
@@ -126,6 +139,24 @@ impl<'a> PlaneMaker<'a> {
                 || surface.is_some_and(|surface| surface.relief_depth() == 0.0)
         };
         self.parallax && !is_flat(corners.mesh)
+    }
+}
+
+/// Sets the planes of the meshes' colours.
+fn fill_tint(planes: &mut [AttributePlanes], basis: &BasisLanes, corners: &[Corners; 8]) {
+    let has_colors = |lane: usize| !corners[lane].mesh.colors.is_empty();
+    if !(0..8).any(has_colors) {
+        // Planes are kept from tile to tile.
+        return planes.iter_mut().for_each(|planes| planes.tint = None);
+    }
+    let colors = vectors(corners, |mesh, i| mesh.colors.get(i).copied().unwrap_or(Vec3::ONE));
+    let tint = [0, 1, 2].map(|channel| basis.plane(colors.map(|color| color[channel])));
+    for (lane, planes) in planes.iter_mut().enumerate() {
+        if has_colors(lane) {
+            **planes.tint.get_or_insert_default() = [0, 1, 2].map(|i| one(&tint[i], lane));
+        } else {
+            planes.tint = None;
+        }
     }
 }
 
@@ -195,6 +226,24 @@ fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vect
     ];
     let straight = [f64x8::ZERO, f64x8::ZERO, f64x8::ONE];
     std::array::from_fn(|i| is_frame.select(solved[i], straight[i]))
+}
+
+/// How much a number at the corners grows per repeat along u and along v; 0 where the normals there
+/// are equal, or the texture has no area.
+fn bends(normals: &[Vectors; 3], tex_coords: &[Vectors; 3], corners: &[f64x8; 3]) -> [f64x8; 2] {
+    let edge = |i: usize| {
+        let [u, v] = [0, 1].map(|axis| tex_coords[i][axis] - tex_coords[0][axis]);
+        (u, v, corners[i] - corners[0])
+    };
+    let ((u1, v1, c1), (u2, v2, c2)) = (edge(1), edge(2));
+    let area = u1 * v2 - u2 * v1;
+    let differs = |i: usize| {
+        let turn = [0, 1, 2].map(|axis| normals[i][axis] - normals[0][axis]);
+        dot(turn, turn).simd_gt(f64x8::splat(LEAST_TURN))
+    };
+    let grown = [(c1 * v2 - c2 * v1) / area, (c2 * u1 - c1 * u2) / area];
+    let is_bent = (differs(1) | differs(2)) & grown[0].is_finite() & grown[1].is_finite();
+    grown.map(|grown| is_bent.select(grown, f64x8::ZERO))
 }
 
 #[inline(always)]

@@ -17,16 +17,12 @@
 use super::edge::{Rect, Row};
 use super::grid::bounds;
 use super::tile::{FARTHEST, NONE, VisibilityBuffer, cover};
-use crate::geometry::{Geometry, Plane, ScreenBasis, offset_bounds};
+use crate::geometry::{Geometry, Plane, offset_bounds};
 use crate::simd::{f32x8, set_bits, u32x8};
 use glam::Vec3;
 
 /// Most polygons that a ray is followed through; it then sees what it has met, or nothing.
 const MOST_POLYGONS: usize = 64;
-
-/// How far behind its own polygon relief is looked for, in depths of the relief there: on curved
-/// surfaces rays go deeper than the plane through the deepest corners is.
-const REACH: f32 = 1.5;
 
 /// How much nearer than where a ray left a relief the polygon there may seem, as a share of 1 / w.
 const ROUNDING: f32 = 1e-4;
@@ -51,16 +47,19 @@ pub trait Follow: Sync {
     /// The corners of a triangle of a mesh with relief where that is deepest, along the view as the
     /// [`Geometry`] has it: x, y and w.
     fn deepest(&self, triangle: [u32; 2]) -> [Vec3; 3];
+    /// Whether the ray through a place of the screen, in pixels, surely hits the relief of a triangle,
+    /// and a distance along the view by which it has: quicker than to follow it.
+    fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32>;
     /// What the ray through a place of the screen, in pixels, meets behind a triangle.
     fn follow(&self, triangle: [u32; 2], place: [f64; 2]) -> Behind;
 }
 
 /// Eight samples whose rays are followed.
 #[derive(Clone, Copy, Debug)]
-struct Followed {
+pub(super) struct Followed {
     /// All bits of those that are, and of those of which more is asked.
-    is_followed: u32x8,
-    is_asked: u32x8,
+    pub(super) is_followed: u32x8,
+    pub(super) is_asked: u32x8,
     /// Depth of the polygon that was asked last, and of the next one with its local index.
     last: f32x8,
     next: f32x8,
@@ -69,6 +68,8 @@ struct Followed {
     best: f32x8,
     best_triangle: u32x8,
     best_polygon: f32x8,
+    /// A bit for each where what was met may be nearer than that.
+    is_bound: u8,
     /// The side of a mesh by which a ray came out of it last, and where: up to there that side is
     /// within the shell that the ray passed, and is not seen.
     passed: u32x8,
@@ -78,12 +79,14 @@ struct Followed {
 /// Buffers of following rays, kept between tiles.
 #[derive(Debug, Default)]
 pub(super) struct FollowScratch {
-    samples: Vec<Followed>,
+    pub(super) samples: Vec<Followed>,
     /// Of each triangle of the list: twice its mesh, and one more if it is seen from behind.
     sides: Vec<u32>,
     may_be_passed: Vec<bool>,
     /// Of each triangle of the list, 1 / w of its deepest relief.
-    deepest: Vec<Option<Plane>>,
+    pub(super) deepest: Vec<Option<Plane>>,
+    /// Of each sample, the least 1 / w of the relief that its polygon has, and the mesh.
+    pub(super) reaches: Vec<(f32x8, u32x8)>,
 }
 
 /// What all of a tile is asked with.
@@ -95,9 +98,28 @@ pub(super) struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    fn triangle(&self, local: usize) -> [u32; 2] {
+    pub(super) fn triangle(&self, local: usize) -> [u32; 2] {
         let triangle = self.geometry.triangle(self.list[local]);
         [triangle.mesh, triangle.triangle]
+    }
+}
+
+impl Followed {
+    /// A lane's ray meets, behind its next polygon, a surface at a distance along the view.
+    fn meet(&mut self, lane: usize, local: u32, w: f32) {
+        let polygon = self.next.as_array()[lane];
+        // Not before its polygon, whatever is rounded.
+        let depth = (1.0 / w).min(polygon);
+        if depth > self.best.as_array()[lane] {
+            self.best.as_mut_array()[lane] = depth;
+            self.best_triangle.as_mut_array()[lane] = local;
+            self.best_polygon.as_mut_array()[lane] = polygon;
+        }
+    }
+
+    /// What a lane's ray has met is at a distance along the view, nearer than its bound.
+    fn nearer(&mut self, lane: usize, w: f32) {
+        self.best.as_mut_array()[lane] = (1.0 / w).min(self.best_polygon.as_array()[lane]);
     }
 }
 
@@ -140,85 +162,59 @@ impl FollowScratch {
         let none = f32x8::splat(FARTHEST);
         let may_be_passed = &self.may_be_passed;
         self.samples.clear();
-        self.samples.extend(buffer.inverse_w.iter().zip(&buffer.triangles).map(|(depth, triangles)| {
-            let is_asked = u32x8::new(triangles.to_array().map(|local| {
-                if local != NONE && may_be_passed[local as usize] { u32::MAX } else { 0 }
-            }));
-            Followed {
-                is_followed: is_asked,
-                is_asked,
-                last: *depth,
-                next: *depth,
-                triangle: *triangles,
-                best: none,
-                best_triangle: u32x8::splat(NONE),
-                best_polygon: none,
-                passed: u32x8::splat(NONE),
-                passed_at: none,
-            }
-        }));
-    }
-
-    /// Asks for samples where another mesh's polygon lies no farther than the deepest relief.
-    fn ask_contacts<const S: usize>(&mut self, buffer: &VisibilityBuffer, asked: &Asked) {
-        let Asked { geometry, list, rect, follow } = asked;
-        self.deepest.clear();
-        self.deepest.extend((0..list.len()).map(|local| {
-            let triangle = asked.triangle(local);
-            follow.has_relief(triangle[0]).then(|| {
-                let view = follow.deepest(triangle).map(|corner| corner.as_dvec3().to_array());
-                ScreenBasis::new(view, geometry.projection().center).inverse_w()
-            })
-        }));
-        // The least 1 / w of each sample's relief, and the mesh that it is of.
-        let mut reaches = vec![(f32x8::splat(f32::INFINITY), u32x8::splat(NONE)); self.samples.len()];
-        for (at, (reach, mesh)) in reaches.iter_mut().enumerate() {
-            let (triangles, depth) = (buffer.triangles[at].to_array(), buffer.inverse_w[at].to_array());
-            for lane in 0..8 {
-                let local = triangles[lane] as usize;
-                let Some([a, b, c]) = self.deepest.get(local).copied().flatten() else { continue };
-                let [x, y] = buffer.place::<S>(at, lane).map(|c| c as f32);
-                let deepest = a * x + b * y + c;
-                reach.as_mut_array()[lane] = depth[lane] - (depth[lane] - deepest) * REACH;
-                mesh.as_mut_array()[lane] = asked.triangle(local)[0];
-            }
-        }
-        for local in 0..list.len() {
-            let triangle = geometry.triangle(list[local]);
-            let mesh = u32x8::splat(triangle.mesh);
-            let [dx, dy, constant] = triangle.depth;
-            let samples = &mut self.samples;
-            let around = bounds(triangle, rect, offset_bounds(S as u32));
-            cover::<S>(triangle, &around, &mut |row: Row| {
-                let (at, inverse_w) = buffer.row::<S>(&row, [dx, dy, constant]);
-                let (reach, own) = reaches[at];
-                let is_within = inverse_w.simd_gt(reach).to_bits() & !own.simd_eq(mesh);
-                let is_near = is_within & row.mask.cast_unsigned();
-                samples[at].is_asked |= is_near;
-                samples[at].is_followed |= is_near;
-            });
-        }
+        self.samples.extend(buffer.inverse_w.iter().zip(&buffer.triangles).map(
+            |(depth, triangles)| {
+                let is_asked = u32x8::new(triangles.to_array().map(|local| {
+                    if local != NONE && may_be_passed[local as usize] { u32::MAX } else { 0 }
+                }));
+                Followed {
+                    is_followed: is_asked,
+                    is_asked,
+                    last: *depth,
+                    next: *depth,
+                    triangle: *triangles,
+                    best: none,
+                    best_triangle: u32x8::splat(NONE),
+                    best_polygon: none,
+                    is_bound: 0,
+                    passed: u32x8::splat(NONE),
+                    passed_at: none,
+                }
+            },
+        ));
     }
 
     /// Follows the rays of the samples that are asked, each behind its next polygon.
     fn follow_all<const S: usize>(&mut self, buffer: &VisibilityBuffer, asked: &Asked) {
+        let (sides, may_be_passed) = (&self.sides, &self.may_be_passed);
         for (at, samples) in self.samples.iter_mut().enumerate() {
             for lane in set_bits(samples.is_asked.to_bitmask()) {
                 let local = samples.triangle.as_array()[lane];
-                let polygon = samples.next.as_array()[lane];
-                let triangle = asked.triangle(local as usize);
-                match asked.follow.follow(triangle, buffer.place::<S>(at, lane)) {
-                    Behind::Surface(w) => {
-                        // Not before its polygon, whatever is rounded.
-                        let depth = (1.0 / w).min(polygon);
-                        if depth > samples.best.as_array()[lane] {
-                            samples.best.as_mut_array()[lane] = depth;
-                            samples.best_triangle.as_mut_array()[lane] = local;
-                            samples.best_polygon.as_mut_array()[lane] = polygon;
-                        }
+                let (triangle, place) =
+                    (asked.triangle(local as usize), buffer.place::<S>(at, lane));
+                let is_first = samples.best_triangle.as_array()[lane] == NONE;
+                let is_probed = is_first && may_be_passed[local as usize];
+                let probed = if is_probed { asked.follow.probe(triangle, place) } else { None };
+                if let Some(w) = probed {
+                    samples.is_bound |= 1 << lane;
+                    samples.meet(lane, local, w);
+                    continue;
+                }
+                if samples.is_bound >> lane & 1 != 0 {
+                    // Another polygon is nearer than the bound: now what is met must be known.
+                    samples.is_bound &= !(1 << lane);
+                    let best = samples.best_triangle.as_array()[lane] as usize;
+                    if let Behind::Surface(w) = asked.follow.follow(asked.triangle(best), place) {
+                        samples.nearer(lane, w);
                     }
+                    if samples.best.as_array()[lane] >= samples.next.as_array()[lane] {
+                        continue;
+                    }
+                }
+                match asked.follow.follow(triangle, place) {
+                    Behind::Surface(w) => samples.meet(lane, local, w),
                     Behind::Nothing(w) => {
-                        samples.passed.as_mut_array()[lane] = self.sides[local as usize] ^ 1;
+                        samples.passed.as_mut_array()[lane] = sides[local as usize] ^ 1;
                         samples.passed_at.as_mut_array()[lane] = (1.0 / w) * (1.0 - ROUNDING);
                     }
                 }
@@ -249,12 +245,10 @@ impl FollowScratch {
                 let (at, inverse_w) = buffer.row::<S>(&row, triangle.depth);
                 let samples = &mut samples[at];
                 let is_within = inverse_w.simd_lt(samples.last) & inverse_w.simd_gt(samples.next);
-                let is_passed = samples.passed.simd_eq(side)
-                    & inverse_w.simd_ge(samples.passed_at).to_bits();
-                let is_next = is_within.to_bits()
-                    & row.mask.cast_unsigned()
-                    & samples.is_asked
-                    & !is_passed;
+                let is_passed =
+                    samples.passed.simd_eq(side) & inverse_w.simd_ge(samples.passed_at).to_bits();
+                let is_next =
+                    is_within.to_bits() & row.mask.cast_unsigned() & samples.is_asked & !is_passed;
                 samples.next = f32x8::from_bits(is_next).bitselect(inverse_w, samples.next);
                 samples.triangle = is_next.bitselect(local, samples.triangle);
             });

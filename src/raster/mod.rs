@@ -17,6 +17,7 @@ mod bin;
 mod block;
 mod canvas;
 mod centers;
+mod contact;
 mod draw;
 mod edge;
 mod gather;

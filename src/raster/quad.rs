@@ -20,6 +20,10 @@ pub struct AttributePlanes {
     /// dP/du + beta dP/dv - gamma sqrt(|dP/du x dP/dv|) N`. `(0, 0, 1)` over w without texture
     /// coordinates.
     pub view: [Plane; 3],
+    /// How much the ray's gamma grows per repeat along u and along v; 0 where the triangle is flat.
+    pub bend: [f32; 2],
+    /// The mesh's colours over w; `None` where it has none.
+    pub tint: Option<Box<[Plane; 3]>>,
     /// World-space attributes; only kept under `Lighting::Lit`.
     pub lit: Option<Box<LitPlanes>>,
     /// The index of the mesh, and of the triangle in it.
@@ -108,6 +112,13 @@ impl<'a> QuadPair<'a> {
         Places::<false> { x, y, planes: self.planes }.attributes(self.w, |planes| &planes.view)
     }
 
+    /// [`AttributePlanes::bend`] of the pixels' triangles; `None` where both are flat.
+    #[inline(always)]
+    pub fn bend(&self) -> Option<[PixelLanes; 2]> {
+        let [[a, b], [c, d]] = self.planes.map(|planes| planes.bend);
+        ([a, b, c, d] != [0.0; 4]).then(|| [halves(a, c), halves(b, d)])
+    }
+
     /// A bit for each lane whose pixel sees the triangle.
     #[inline(always)]
     pub fn covered_bits(&self) -> u8 {
@@ -136,6 +147,21 @@ impl<'a> QuadPair<'a> {
     #[inline]
     pub fn centers(&self) -> [PixelLanes; 2] {
         centers(self.origin)
+    }
+
+    /// The meshes' colours at the pixel centres; `None` where neither has any.
+    pub fn tint(&self) -> Option<[PixelLanes; 3]> {
+        let [a, b] = self.planes.map(|planes| planes.tint.as_deref());
+        if a.is_none() && b.is_none() {
+            return None;
+        }
+        // White is w over w.
+        let [a, b] = self
+            .planes
+            .map(|planes| planes.tint.as_deref().copied().unwrap_or([planes.inverse_w; 3]));
+        let [x, y] = self.centers();
+        let places = Places::<false> { x, y, planes: self.planes };
+        Some(std::array::from_fn(|i| places.value([a[i], b[i]]) * self.w))
     }
 
     /// World-space attributes at the pixel centres; `None` unless lit.

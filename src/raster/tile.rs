@@ -129,7 +129,11 @@ impl VisibilityBuffer {
 
     /// Where the samples of a row of eight pixels are kept, and the 1 / w of a plane there.
     #[inline(always)]
-    pub(super) fn row<const S: usize>(&self, row: &Row, [dx, dy, constant]: Plane) -> (usize, f32x8) {
+    pub(super) fn row<const S: usize>(
+        &self,
+        row: &Row,
+        [dx, dy, constant]: Plane,
+    ) -> (usize, f32x8) {
         let offset = sample_offsets(S as u32)[row.sample];
         let [offset_x, offset_y] = offset.map(|offset| offset as f32 * (1.0 / 256.0));
         // Places count from the frame's corner and not from the tile's: the same bits of depth

@@ -34,10 +34,26 @@ struct Piece<'a> {
     field: &'a HeightField,
     start: [f64; 2],
     step: [f64; 2],
+    /// One over the step.
+    inverse: [f64; 2],
     depth: [f64; 2],
 }
 
+/// Where a path is along an axis.
+#[derive(Clone, Copy)]
+struct Axis {
+    /// Its cell, and that in the stored pattern.
+    cell: i32,
+    stored: i32,
+}
+
 impl HeightField {
+    /// Whether a place lies within the relief.
+    pub fn holds(&self, place: &ReliefPlace) -> bool {
+        let [u, v] = [0, 1].map(|i| place.uv[i] * f64::from(self.texels_per_repeat[i]));
+        self.height_at(u, v) + place.depth >= 1.0
+    }
+
     /// How far, 0 to 1, it is on the straight way between two places to where relief is first met;
     /// 0 where the first lies in the relief already.
     pub fn first_hit(&self, from: &ReliefPlace, to: &ReliefPlace) -> Option<f64> {
@@ -52,9 +68,11 @@ impl HeightField {
             let whole = if self.is_clamped { 0.0 } else { (start[i] / size).floor() * size };
             (start[i] - whole).clamp(-1e9, 1e9)
         });
-        let piece =
-            Piece { field: self, start, step, depth: [from.depth, to.depth - from.depth] };
-        if step.iter().chain(&piece.depth).all(|c| c.is_finite()) { piece.first_hit() } else { Some(0.0) }
+        let inverse = step.map(|step| 1.0 / step);
+        let depth = [from.depth, to.depth - from.depth];
+        let piece = Piece { field: self, start, step, inverse, depth };
+        let is_finite = step.iter().chain(&depth).all(|c| c.is_finite());
+        if is_finite { piece.first_hit() } else { Some(0.0) }
     }
 }
 
@@ -63,66 +81,96 @@ impl Piece<'_> {
         let field = self.field;
         let longest = self.step[0].abs().max(self.step[1].abs());
         let top = field.first_level(longest as f32);
-        let mut cell = self.start.map(|c| c.floor() as i64);
+        let mut axes = [0, 1].map(|i| {
+            let cell = self.start[i].floor() as i32;
+            Axis { cell, stored: field.fold(i, cell) }
+        });
         let (mut at, mut level) = (0.0_f64, top);
         for _ in 0..MAX_STEPS {
-            let folded = [0, 1].map(|i| field.fold(i, cell[i].clamp(-1 << 30, 1 << 30) as i32));
             // Beyond the edges of a clamped pattern there are cells alone.
-            if field.is_clamped && (0..2).any(|i| folded[i] < 0 || i64::from(folded[i]) != cell[i]) {
+            if field.is_clamped
+                && axes.iter().any(|axis| axis.stored < 0 || axis.stored != axis.cell)
+            {
                 level = 0;
             }
-            let node = [0, 1].map(|i| self.node(i, cell[i], folded[i], level));
-            let (exit, axis) = self.exit(&node, at);
+            let nodes = [0, 1].map(|i| self.node(i, axes[i], level));
+            let (exit, first) = self.exit(&nodes, at);
             let end = exit.min(1.0);
-            let deepest = self.depth[0] + (self.depth[1] * at).max(self.depth[1] * end);
-            if deepest + field.height_above(level, folded) >= 1.0 {
+            // The path is lowest at one of its ends.
+            let deepest =
+                self.depth[0] + self.depth[1] * if self.depth[1] > 0.0 { end } else { at };
+            let stored = axes.map(|axis| axis.stored);
+            if deepest + field.height_above(level, stored) >= 1.0 {
                 if level > 0 {
                     level -= 1;
                     continue;
                 }
-                if let Some(hit) = self.hit_in_cell(cell, folded, at, end) {
+                if let Some(hit) = self.hit_in_cell(&axes, at, end) {
                     return Some(hit);
                 }
             }
             if exit >= 1.0 {
                 return None;
             }
-            // Along the other axis the path is where it is, within the node.
             at = exit;
-            let (other, [low, high]) = (1 - axis, node[1 - axis]);
-            let place = (self.start[other] + self.step[other] * at).floor() as i64;
-            cell[other] = place.clamp(low, high - 1);
-            cell[axis] = if self.step[axis] < 0.0 { node[axis][0] - 1 } else { node[axis][1] };
+            axes = [0, 1].map(|i| {
+                let [low, high] = nodes[i];
+                let next = match i == first {
+                    true if self.step[i] < 0.0 => low - 1,
+                    true => high,
+                    // Along the other axis the path is where it is, within the node.
+                    false => {
+                        ((self.start[i] + self.step[i] * at).floor() as i32).clamp(low, high - 1)
+                    }
+                };
+                self.moved(i, axes[i], next)
+            });
             level = (level + 1).min(top);
         }
         Some(at)
     }
 
     /// The first cell of a level's node along an axis, and the first beyond it.
-    fn node(&self, axis: usize, cell: i64, folded: i32, level: i32) -> [i64; 2] {
-        let size = 1_i64 << level;
-        let low = cell - (i64::from(folded) & (size - 1));
+    #[inline(always)]
+    fn node(&self, i: usize, axis: Axis, level: i32) -> [i32; 2] {
+        let size = 1 << level;
+        let low = axis.cell - (axis.stored & (size - 1));
         // The last node of a pattern may be smaller than others.
-        let end = cell + i64::from((self.field.size[axis] - folded).max(1));
+        let end = axis.cell + (self.field.size[i] - axis.stored).max(1);
         [low, end.min(low + size)]
     }
 
     /// How far it is to where the path leaves a node, and along which axis it does.
-    fn exit(&self, node: &[[i64; 2]; 2], at: f64) -> (f64, usize) {
+    #[inline(always)]
+    fn exit(&self, nodes: &[[i32; 2]; 2], at: f64) -> (f64, usize) {
         let ways = [0, 1].map(|i| {
-            let edge = node[i][usize::from(self.step[i] >= 0.0)];
-            let way = (edge as f64 - self.start[i]) / self.step[i];
+            let edge = if self.step[i] < 0.0 { nodes[i][0] } else { nodes[i][1] };
+            let way = (f64::from(edge) - self.start[i]) * self.inverse[i];
             if self.step[i] == 0.0 { f64::INFINITY } else { way.max(at) }
         });
-        let axis = usize::from(ways[1] < ways[0]);
-        (ways[axis], axis)
+        let first = usize::from(ways[1] < ways[0]);
+        (ways[first], first)
+    }
+
+    /// The place of another cell, of the same pattern or one beside it.
+    #[inline(always)]
+    fn moved(&self, i: usize, axis: Axis, cell: i32) -> Axis {
+        let size = self.field.size[i];
+        let stored = axis.stored + (cell - axis.cell);
+        let stored = match self.field.is_clamped {
+            true => self.field.fold(i, cell),
+            false if stored >= size => stored - size,
+            false if stored < 0 => stored + size,
+            false => stored,
+        };
+        Axis { cell, stored }
     }
 
     /// The first crossing with a cell's bilinear patch between two points of the way.
-    fn hit_in_cell(&self, cell: [i64; 2], [i, j]: [i32; 2], at: f64, end: f64) -> Option<f64> {
-        let heights = self.field.corners(i, j);
+    fn hit_in_cell(&self, axes: &[Axis; 2], at: f64, end: f64) -> Option<f64> {
+        let heights = self.field.corners(axes[0].stored, axes[1].stored);
         let [h00, h10, h01, h11] = heights.map(|height| f64::from(height) / f64::from(FULL_F32));
-        let [x, y] = [0, 1].map(|i| self.start[i] + self.step[i] * at - cell[i] as f64);
+        let [x, y] = [0, 1].map(|i| self.start[i] + self.step[i] * at - f64::from(axes[i].cell));
         let [dx, dy] = self.step;
         let (hx, hy, hxy) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
         // f(s) = a s^2 + b s + c: how far the path is below the relief, s on from `at`.

@@ -145,7 +145,7 @@ impl Baked {
                 if !is_seen || piece.sides[side].is_some() {
                     continue;
                 }
-                piece.sides[side] = piece.light(side, (scene, &occluders), unlit);
+                piece.sides[side] = Some(piece.light(side, (scene, &occluders), unlit));
             }
         }
     }
@@ -209,7 +209,7 @@ impl Piece {
         side: usize,
         (scene, occluders): (&Scene, &impl Fn() -> &'a Occluders),
         unlit: &Prepared,
-    ) -> Option<Side> {
+    ) -> Side {
         let normal = if side == 0 { self.frame.normal } else { -self.frame.normal };
         let frame = TextureFrame { normal, ..self.frame };
         let material = &scene.materials[self.material];
@@ -222,24 +222,24 @@ impl Piece {
         let has_shares = material.maps.metallic.is_some() || material.maps.occlusion.is_some();
         let shares = has_shares.then_some(&shares as &(dyn Fn(_, _) -> _ + Sync));
         let lit = |lights: &[Light], sky: &Sky| {
-            let (suns, sky) = (frame.beams(lights, &Sky::default())?, frame.beams(&[], sky)?);
-            Some(unlit.recolored(baked(unlit.surface(), [&suns, &sky], shares)))
+            let (suns, sky) = (frame.beams(lights, &Sky::default()), frame.beams(&[], sky));
+            unlit.recolored(baked(unlit.surface(), [&suns, &sky], shares))
         };
         let (mut apart, mut open_sky) = (Vec::new(), None);
         if self.may_be_shaded(side, scene) {
-            apart.push(lit(&[], &scene.sky)?);
-            for light in &scene.lights {
-                apart.push(lit(std::slice::from_ref(light), &Sky::default())?);
+            apart.push(lit(&[], &scene.sky));
+            for light in scene.lights.iter().filter(|light| matches!(light, Light::Sun { .. })) {
+                apart.push(lit(std::slice::from_ref(light), &Sky::default()));
             }
             open_sky = self.open_sky(side, (scene, occluders()), unlit);
         }
-        let suns = frame.beams(&scene.lights, &Sky::default())?;
+        let suns = frame.beams(&scene.lights, &Sky::default());
         let gloss = (!material.is_matte() && !suns.is_empty()).then(|| {
             let base = |albedo: [f32; 3]| Vec3::from(albedo) * material.base_color;
             let straight = |x, y, albedo| Fresnel::new(&finish(x, y), base(albedo)).straight;
             unlit.recolored(glossy(unlit.surface(), &suns, straight))
         });
-        Some(Side { normal, lit: lit(&scene.lights, &scene.sky)?, apart, open_sky, gloss })
+        Side { normal, lit: lit(&scene.lights, &scene.sky), apart, open_sky, gloss }
     }
 
     /// What other meshes leave of the sky to that side.

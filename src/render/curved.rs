@@ -1,27 +1,30 @@
-//! Blocks of a curved surface, whose texels are lit as they are swept.
+//! Blocks whose texels are lit as they are swept: curved ones, and flat ones under points.
 //!
-//! Suns that other meshes, or the mesh itself, hide from a part of a block are swept apart, and each
-//! pixel takes of them what it sees.
+//! Lights that other meshes, or the mesh itself, hide from a part of a block are swept apart, and
+//! each pixel takes of them what it sees.
 
 use super::ground::{Ground, Swept};
+use super::points::HiddenLights;
 use super::shade::{ShadeScratch, Shader};
 use crate::raster::QuadBlock;
 use crate::simd::PixelLanes;
 
 impl Shader<'_> {
-    /// Appends the lit colours of a block's pairs.
+    /// Appends what a block's pairs show of some lights.
     pub(super) fn swept(
         &self,
         ground: &Ground,
-        all: Swept,
+        (all, hidden): (Swept, &HiddenLights),
         block: &QuadBlock,
         scratch: &mut ShadeScratch,
         colors: &mut Vec<[PixelLanes; 3]>,
     ) {
-        let (hidden, shown) = self.hidden_on_curved(ground, block);
-        // Find the suns that reach all of the block, and those that reach a part.
+        // Find the lights that reach all of the block, and those that reach a part.
         let (mut whole, mut parts) = (all, Vec::new());
-        for (i, hidden) in hidden.iter().enumerate() {
+        for (i, hidden) in hidden.0.iter().enumerate() {
+            if hidden.is_empty() || all.lights >> i & 1 == 0 {
+                continue;
+            }
             let covered = || hidden.iter().zip(block.pairs());
             let all_are = |value: f32| {
                 covered().all(|(hidden, pair)| {
@@ -29,7 +32,7 @@ impl Shader<'_> {
                 })
             };
             if !all_are(0.0) {
-                whole.suns &= !(1 << i);
+                whole.lights &= !(1 << i);
                 if !all_are(1.0) {
                     parts.push((i, hidden));
                 }
@@ -40,14 +43,11 @@ impl Shader<'_> {
         let mut part = Vec::new();
         for (i, hidden) in parts {
             part.clear();
-            let sun = Swept { suns: 1 << i, has_sky: false };
-            self.textured(&Ground { swept: Some(sun), ..*ground }, block, scratch, &mut part);
+            let light = Swept { lights: 1 << i, has_sky: false };
+            self.textured(&Ground { swept: Some(light), ..*ground }, block, scratch, &mut part);
             for ((color, part), hidden) in colors[start..].iter_mut().zip(&part).zip(hidden) {
                 (0..3).for_each(|c| color[c] += part[c] * (PixelLanes::ONE - *hidden));
             }
-        }
-        for (color, shown) in colors[start..].iter_mut().zip(shown) {
-            color.iter_mut().for_each(|channel| *channel *= shown);
         }
     }
 }

@@ -3,8 +3,9 @@
 use super::ground::{Ground, Swept};
 use super::skies::Skies;
 use crate::footprint::Footprints;
-use crate::light::{Curved, CurvedSun, Disc, FrameLanes, LinearSky, Slant};
+use crate::light::{Curved, CurvedSun, Disc, FrameLanes, LinearSky, Slant, Ways};
 use crate::raster::{LitLanes, QuadBlock};
+use crate::relief::displacement;
 use crate::scene::{Light, Scene};
 use glam::Vec3;
 use std::ops::Range;
@@ -16,30 +17,42 @@ pub(super) struct CurvedLights {
     suns: Vec<CurvedSun>,
     frames: Vec<FrameLanes>,
     slants: Vec<Slant>,
+    points: Vec<Vec3>,
+    ways: Vec<Ways>,
 }
 
 impl CurvedLights {
     /// Some of a scene's lights on pairs of a block.
     pub(super) fn new(
         (scene, skies): (&Scene, &Skies),
-        swept: Swept,
+        (swept, relief_depth): (Swept, f32),
         block: &QuadBlock,
         pairs: Range<usize>,
     ) -> Self {
-        let discs = scene.lights.iter().enumerate().filter_map(|(i, light)| match *light {
-            Light::Sun { to_light, intensity, angular_size } if swept.suns >> i & 1 == 1 => {
+        let lights = || {
+            let lights = scene.lights.iter().enumerate();
+            lights.filter(|(i, _)| swept.lights >> i & 1 == 1).map(|(_, light)| *light)
+        };
+        let discs = lights().filter_map(|light| match light {
+            Light::Sun { to_light, intensity, angular_size } => {
                 Some((Disc::new(to_light.normalize_or_zero(), angular_size), intensity))
             }
-            _ => None,
+            Light::Point { .. } => None,
         });
         let discs: Vec<(Disc, Vec3)> = discs.collect();
+        let places = lights().filter_map(|light| match light {
+            Light::Point { position, intensity } => Some((position, intensity)),
+            Light::Sun { .. } => None,
+        });
+        let places: Vec<(Vec3, Vec3)> = places.collect();
         let sun = |(disc, intensity): &(Disc, Vec3)| CurvedSun {
             intensity: *intensity,
             radius: disc.radius,
         };
         let suns = discs.iter().map(sun).collect();
         let (frames, slants, of_pairs) = Default::default();
-        let mut all = Self { skies: of_pairs, suns, frames, slants };
+        let points = places.iter().map(|(_, intensity)| *intensity).collect();
+        let mut all = Self { skies: of_pairs, suns, frames, slants, points, ways: Vec::new() };
         for pair in pairs.map(|index| block.pair(index)) {
             let Some(LitLanes { position, normal, tangent_u, tangent_v }) = pair.lit() else {
                 continue;
@@ -47,6 +60,10 @@ impl CurvedLights {
             let frame =
                 FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
             all.slants.extend(discs.iter().map(|(disc, _)| frame.slant(disc.to_middle)));
+            if !places.is_empty() {
+                let ray = (displacement(&pair.view(), relief_depth), relief_depth);
+                all.ways.extend(places.iter().map(|(at, _)| frame.ways(&position, *at, ray)));
+            }
             if swept.has_sky {
                 all.skies.push(skies.of_pair(scene, &pair, &frame));
             }
@@ -70,7 +87,7 @@ impl CurvedLights {
 
     /// All of them.
     pub(super) fn all(&self) -> Curved<'_> {
-        let Self { skies, suns, frames, slants } = self;
-        Curved { suns, skies, frames, slants }
+        let Self { skies, suns, frames, slants, points, ways } = self;
+        Curved { suns, skies, frames, slants, points, ways }
     }
 }

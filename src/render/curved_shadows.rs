@@ -5,6 +5,7 @@
 //! in the way: where nothing is, no ray is sent and nothing of the relief is looked for.
 
 use super::ground::Ground;
+use super::points::HiddenLights;
 use super::shade::Shader;
 use super::shadows::{Hidden, Places, along, half_width, of_lane, places, range, steps};
 use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
@@ -19,13 +20,14 @@ use glam::Vec3;
 const LEAST_FACING: f32 = 0.1;
 
 impl Shader<'_> {
-    /// The parts of each sun that are not seen from the pixels of a block of a curved surface, sun by
-    /// sun and pair by pair, and the part of each pixel that lies on the side that is seen.
-    pub(super) fn hidden_on_curved(
+    /// Finds the parts of suns that are not seen from the pixels of a block of a curved surface, and
+    /// returns the part of each pixel that lies on the side that is seen.
+    pub(super) fn hide_on_curved(
         &self,
         ground: &Ground,
         block: &QuadBlock,
-    ) -> (Vec<Vec<PixelLanes>>, Vec<PixelLanes>) {
+        hidden: &mut HiddenLights,
+    ) -> Vec<PixelLanes> {
         let occluders = self.prepared.occluders(self.scene);
         let rays = block.pairs().filter_map(|pair| ViewRays::new(self.scene, ground, &pair));
         let rays: Vec<_> = rays.collect();
@@ -49,8 +51,12 @@ impl Shader<'_> {
             hide(occluders, ceiling, &open, &mut hidden);
             hidden
         };
-        let hidden = self.prepared.ceilings(self.scene).iter().map(of_sun).collect();
-        (hidden, rays.iter().map(|rays| rays.shown).collect())
+        for (ceiling, hidden) in self.prepared.ceilings(self.scene).iter().zip(&mut hidden.0) {
+            if let Some(ceiling) = ceiling {
+                *hidden = of_sun(ceiling);
+            }
+        }
+        rays.iter().map(|rays| rays.shown).collect()
     }
 }
 

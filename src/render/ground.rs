@@ -21,6 +21,8 @@ pub(crate) struct Ground<'a> {
     pub(crate) prepared: &'a Prepared,
     /// The same before light.
     pub(crate) unlit: &'a Prepared,
+    /// The same in the colours of its diffuse layer, where a texture says what of it is metal.
+    pub(crate) diffuse: &'a Prepared,
     /// Whether there is light.
     pub(crate) is_lit: bool,
     /// By what its texels are lit as they are swept: a relief on what is curved, under suns and a sky.
@@ -34,8 +36,8 @@ pub(crate) struct Ground<'a> {
 /// Lights of a scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swept {
-    /// A bit for each sun.
-    pub(crate) suns: u64,
+    /// A bit for each light.
+    pub(crate) lights: u64,
     /// Whether the sky is one of them.
     pub(crate) has_sky: bool,
 }
@@ -77,7 +79,13 @@ impl Ground<'_> {
         let covered = is_before & (0xff_u16 >> (8 - num_samples)) as u8;
         let (uv, view) = planes.at(x, y);
         let field = self.prepared.field();
-        Footprints::of_samples((&uv, &view), field, is_traced, pixel, covered)
+        let rays = Footprints::of_samples((&uv, &view), field, is_traced, pixel, covered);
+        match field {
+            Some(field) if planes.bend != [0.0; 2] && !is_traced => {
+                rays.bent(&view, &planes.bend.map(PixelLanes::splat), field)
+            }
+            _ => rays,
+        }
     }
 
     /// Where the rays of samples hit the relief of a curved mesh; `None` where it is flat.

@@ -16,6 +16,8 @@ mod ground;
 mod mapped;
 mod open_sky;
 mod outlines;
+mod passages;
+mod points;
 mod prepared;
 mod reflections;
 mod shade;
@@ -23,6 +25,7 @@ mod shadows;
 mod skies;
 
 pub(crate) use outlines::Outlines;
+pub(crate) use passages::Passages;
 pub(crate) use prepared::PreparedScene;
 pub(crate) use shade::{ShadeScratch, Shader};
 
@@ -232,7 +235,8 @@ impl Renderer {
             .flatten();
         let shader = Shader::new(scene, settings, prepared, outlines, pool);
         let shade = |block: &QuadBlock, colors: &mut Vec<_>| shader.shade(block, colors);
-        let follow = outlines.as_ref().map(|outlines| outlines as &dyn Follow);
+        let passages = Passages::new(scene, geometry.projection(), outlines);
+        let follow = passages.as_ref().map(|passages| passages as &dyn Follow);
         let drawn = Drawn { scene, settings, group, follow };
         let counts = rasterizer.draw(geometry, drawn, &shade, clock, pixels);
         let work = shader.work();

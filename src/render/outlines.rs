@@ -60,9 +60,11 @@ impl<'a> Outlines<'a> {
         let mesh = &self.scene.meshes[mesh as usize];
         let corners = mesh.triangles[hit.triangle as usize].map(|i| i as usize);
         let mean = |of: &dyn Fn(usize) -> Vec3| {
-            corners.iter().zip(hit.shares).fold(DVec3::ZERO, |sum, (i, share)| {
-                sum + of(*i).as_dvec3() * share
-            }).as_vec3()
+            corners
+                .iter()
+                .zip(hit.shares)
+                .fold(DVec3::ZERO, |sum, (i, share)| sum + of(*i).as_dvec3() * share)
+                .as_vec3()
         };
         SurfacePoint {
             position: mean(&|i| mesh.positions[i]),
@@ -73,14 +75,22 @@ impl<'a> Outlines<'a> {
 
     /// What a ray through a place of the screen meets behind a triangle: without relief its polygon,
     /// however near.
-    pub(crate) fn met(&self, [mesh, triangle]: [u32; 2], place: [f64; 2]) -> Met {
+    pub(crate) fn met(&self, triangle: [u32; 2], place: [f64; 2]) -> Met {
+        self.walk::<false>(triangle, place)
+    }
+
+    fn walk<const PROBES: bool>(&self, [mesh, triangle]: [u32; 2], place: [f64; 2]) -> Met {
         let shell = self.shells[mesh as usize].as_ref();
         let mesh = &self.scene.meshes[mesh as usize];
         let field = || self.prepared.of_material(mesh.material, true)?.field();
         let Some((shell, field)) = shell.zip(field()) else { return Met::Polygon };
         let eye = self.scene.camera.eye.as_dvec3();
         let ray = ViewRay { eye, direction: self.projection.direction(place) };
-        shell.follow(mesh, field, triangle, &ray)
+        if PROBES {
+            shell.probe(mesh, field, triangle, &ray)
+        } else {
+            shell.follow(mesh, field, triangle, &ray)
+        }
     }
 }
 
@@ -109,6 +119,11 @@ impl Follow for Outlines<'_> {
             None => mesh.triangles[triangle as usize].map(|i| mesh.positions[i as usize]),
         };
         corners.map(|corner| self.projection.view(corner))
+    }
+
+    fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32> {
+        let met = self.walk::<true>(triangle, place);
+        if let Met::Relief(hit) = met { Some(hit.distance as f32) } else { None }
     }
 
     fn follow(&self, triangle: [u32; 2], place: [f64; 2]) -> Behind {

@@ -26,6 +26,7 @@ pub(crate) struct PreparedScene {
     surfaces: Vec<Prepared>,
     /// The same drawn flat, as they are where relief is not traced.
     flat: Vec<Prepared>,
+    has_points: bool,
     /// The surface of each material that has one.
     of_material: Vec<Option<usize>>,
     /// Lit for good, with relief or without; `None` where lights are evaluated place by place.
@@ -36,8 +37,8 @@ pub(crate) struct PreparedScene {
     reflectance: OnceLock<Reflectance>,
     /// What the truth's light and shadows ask for.
     occluders: OnceLock<Occluders>,
-    /// What curved surfaces ask for: of each sun.
-    ceilings: OnceLock<Vec<Ceiling>>,
+    /// What curved surfaces ask for: of each light that is a sun.
+    ceilings: OnceLock<Vec<Option<Ceiling>>>,
     /// The same of the sky.
     skies: OnceLock<Skies>,
     /// The relief of each mesh that has one, for rays that may pass it or meet another mesh in it.
@@ -81,13 +82,13 @@ impl PreparedScene {
             .collect();
         let flat = surfaces.iter().map(Prepared::without_relief).collect();
         let (reflectance, occluders, ceilings, skies, shells) = Default::default();
-        let (baked, mapped) = (None, None);
         Self {
             surfaces,
             flat,
+            has_points: scene.lights.iter().any(|light| matches!(light, Light::Point { .. })),
             of_material,
-            baked,
-            mapped,
+            baked: None,
+            mapped: None,
             reflectance,
             occluders,
             ceilings,
@@ -120,9 +121,9 @@ impl PreparedScene {
         if is_lit && !is_exact && self.mapped.as_ref().is_none_or(|m| m.0 != settings.parallax) {
             self.mapped = Some((settings.parallax, self.mapped(scene, settings.parallax)));
         }
-        // Where a point shines, no piece is lit alike all over.
-        let has_points = scene.lights.iter().any(|light| matches!(light, Light::Point { .. }));
-        if is_lit && !is_exact && !has_points {
+        // Where a point shines, only a filter that asks for lights adds it to what is baked.
+        let asks = settings.filter.traits().asks_for_lights;
+        if is_lit && !is_exact && (!self.has_points || asks) {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
             let unlit = |material| self.of_material(material, settings.parallax);
@@ -132,12 +133,18 @@ impl PreparedScene {
             }
             let curved = baked.curved(scene).map(|mesh| mesh.material).collect::<Vec<_>>();
             self.baked = Some((settings.parallax, baked));
-            if !curved.is_empty() && settings.filter.traits().asks_for_lights {
+            if !curved.is_empty() && asks {
                 self.ceilings(scene);
                 self.skies(scene);
-                for material in curved {
+            }
+            if asks {
+                let all = scene.meshes.iter().map(|mesh| mesh.material).filter(|_| self.has_points);
+                for material in curved.into_iter().chain(all) {
                     self.of_material(material, settings.parallax).map(Prepared::horizons);
                 }
+            }
+            if self.has_points {
+                self.occluders(scene);
             }
         } else {
             self.baked = None;
@@ -184,8 +191,13 @@ impl PreparedScene {
         })
     }
 
-    /// What may hide each sun from curved surfaces; nothing else than suns shines there.
-    pub(crate) fn ceilings(&self, scene: &Scene) -> &[Ceiling] {
+    /// Whether any light is a point.
+    pub(crate) fn has_points(&self) -> bool {
+        self.has_points
+    }
+
+    /// What may hide each light from curved surfaces; `None` for a point.
+    pub(crate) fn ceilings(&self, scene: &Scene) -> &[Option<Ceiling>] {
         self.ceilings.get_or_init(|| {
             let Some((_, baked)) = &self.baked else { return Vec::new() };
             let triangles = self.occluders(scene).triangles();
@@ -198,7 +210,7 @@ impl PreparedScene {
                     baked.curved(scene).flat_map(|mesh| mesh.positions.iter().copied()),
                 ))
             };
-            scene.lights.iter().filter_map(ceiling).collect()
+            scene.lights.iter().map(ceiling).collect()
         })
     }
 
@@ -246,11 +258,11 @@ impl PreparedScene {
             && settings.filter.traits().asks_for_lights
             && prepared.field().is_some()
             && prepared.surface().has_normals();
-        let swept = is_swept.then_some(Swept { suns: u64::MAX, has_sky: true });
-        let diffuse = mapped.and_then(|mapped| mapped.diffuse.as_ref());
-        let prepared = diffuse.filter(|_| is_swept).unwrap_or(prepared);
+        let swept = is_swept.then_some(Swept { lights: u64::MAX, has_sky: true });
+        let diffuse = mapped.and_then(|mapped| mapped.diffuse.as_ref()).unwrap_or(unlit);
+        let prepared = if is_swept { diffuse } else { prepared };
         let glow = mapped.and_then(|mapped| mapped.glow.as_ref());
-        Some(Ground { material, prepared, unlit, is_lit, swept, baked, glow })
+        Some(Ground { material, prepared, unlit, diffuse, is_lit, swept, baked, glow })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

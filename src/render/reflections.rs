@@ -11,6 +11,7 @@
 //! hide nothing.
 
 use super::ground::{Ground, in_lanes};
+use super::points::HiddenLights;
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
 use crate::filter::{Batch, Filtered, Prepared};
 use crate::light::reflection::Fresnel;
@@ -26,6 +27,7 @@ impl Shader<'_> {
     pub(super) fn reflect(
         &self,
         ground: &Ground,
+        hidden: &HiddenLights,
         block: &QuadBlock,
         scratch: &mut ShadeScratch,
         colors: &mut [[PixelLanes; 3]],
@@ -39,13 +41,14 @@ impl Shader<'_> {
         }
         for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
             let pairs = first..block.num_pairs().min(first + PAIRS_AT_ONCE);
-            self.reflect_pairs(ground, (block, pairs.clone()), scratch, &mut colors[pairs]);
+            let colors = &mut colors[pairs.clone()];
+            self.reflect_pairs((ground, hidden), (block, pairs), scratch, colors);
         }
     }
 
     fn reflect_pairs(
         &self,
-        ground: &Ground,
+        (ground, hidden): (&Ground, &HiddenLights),
         (block, pairs): (&QuadBlock, Range<usize>),
         scratch: &mut ShadeScratch,
         colors: &mut [[PixelLanes; 3]],
@@ -59,6 +62,7 @@ impl Shader<'_> {
         filtered.resize(pairs.len(), Filtered::default());
         let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
         self.count(mips.colors(ground.unlit, &batch, filter, filtered));
+        hidden.dim(lights, (block, pairs.clone()));
         ground.occlude(footprints, lights);
         let places = footprints.iter().zip(&*filtered).flat_map(|(pixels, filtered)| {
             pixels.covered().map(|lane| (pixels.lane(lane), filtered.lane(lane)))

@@ -5,6 +5,7 @@ use super::exact::Exact;
 use super::ground::{Ground, in_lanes, of_hits, pixel_center, surface_point};
 use super::mapped::Glow;
 use super::outlines::Outlines;
+use super::points::HiddenLights;
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Samples, Scratch, Traits, Work};
 use crate::footprint::{Footprint, FootprintRule, Footprints};
@@ -89,26 +90,48 @@ impl<'a> Shader<'a> {
             let (filter, is_traced) = (&self.settings.filter, self.traits.rule.is_traced);
             let outlines = self.outlines.as_ref();
             let exact = Exact { light, samples, filter, is_traced, material, ground, outlines };
-            return colors
-                .extend(block.pairs().map(|pair| exact.colors(&pair, &mut scratch.filter)));
+            return colors.extend(block.pairs().map(|pair| {
+                let mut color = [exact.colors(&pair, &mut scratch.filter)];
+                tint(std::iter::once(pair), &mut color);
+                color[0]
+            }));
         }
         let Some(ground) = ground else {
             return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
         };
         let start = colors.len();
+        let mut hidden = HiddenLights::none(self.scene.lights.len());
+        // What only sends out light sends out its colour.
+        let is_glowing = material.base_color == Vec3::ZERO;
         if let Some(swept) = ground.swept {
-            self.swept(&ground, swept, block, &mut scratch, colors);
+            let shown = self.hide_on_curved(&ground, block, &mut hidden);
+            self.hide_points(&ground, block, &mut hidden);
+            self.swept(&ground, (swept, &hidden), block, &mut scratch, colors);
+            for (color, shown) in colors[start..].iter_mut().zip(shown) {
+                color.iter_mut().for_each(|channel| *channel *= shown);
+            }
         } else {
             self.textured(&ground, block, &mut scratch, colors);
         }
+        let colors = &mut colors[start..];
         if let Some(lit) = ground.baked {
-            self.shadow(&ground, &lit, block, &mut scratch, &mut colors[start..]);
+            self.shadow((&ground, &lit), block, &mut scratch, &mut hidden, colors);
+            if self.prepared.has_points() {
+                self.hide_points(&ground, block, &mut hidden);
+                self.shine(&ground, &hidden, block, &mut scratch, colors);
+            }
+        }
+        if !is_glowing {
+            tint(block.pairs(), colors);
         }
         if ground.baked.is_some() || ground.swept.is_some() {
-            self.reflect(&ground, block, &mut scratch, &mut colors[start..]);
+            self.reflect(&ground, &hidden, block, &mut scratch, colors);
         }
         if let Some(glow) = ground.glow {
-            self.glow(&ground, glow, block, &mut scratch, &mut colors[start..]);
+            self.glow(&ground, glow, block, &mut scratch, colors);
+        }
+        if is_glowing {
+            tint(block.pairs(), colors);
         }
     }
 
@@ -123,7 +146,7 @@ impl<'a> Shader<'a> {
     ) {
         let unlit = Ground { is_lit: false, swept: None, baked: None, glow: None, ..*ground };
         let mut sent = Vec::with_capacity(colors.len());
-        let sending = Ground { material, prepared, unlit: prepared, ..unlit };
+        let sending = Ground { material, prepared, unlit: prepared, diffuse: prepared, ..unlit };
         self.textured(&sending, block, scratch, &mut sent);
         for (color, sent) in colors.iter_mut().zip(&sent) {
             (0..3).for_each(|c| color[c] += sent[c]);
@@ -151,15 +174,23 @@ impl<'a> Shader<'a> {
     /// Pixels of a material without a texture.
     fn plain(&self, pair: &QuadPair, material: &Material) -> [PixelLanes; 3] {
         let mut colors = [Vec3::ZERO; 8];
+        let tint = pair.tint();
+        let tint = |lane: usize| {
+            tint.map_or(Vec3::ONE, |tint| Vec3::from(tint.map(|c| c.as_array()[lane])))
+        };
         // Helper lanes stay black: nothing adds them to a pixel.
         for lane in pair.covered() {
+            let base = material.base_color * tint(lane);
             colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
                 Some(lights) => {
                     // Nothing bends the normal here: it is z in the surface's own frame.
-                    let finish = material.plain_finish();
-                    self.lit_color(&finish, (material.base_color, false), Vec3::Z, &lights)
+                    let mut finish = material.plain_finish();
+                    if material.base_color == Vec3::ZERO {
+                        finish.emissive *= tint(lane);
+                    }
+                    self.lit_color(&finish, (base, false), Vec3::Z, &lights)
                 }
-                None => material.base_color,
+                None => base,
             };
         }
         in_lanes(&colors)
@@ -189,7 +220,7 @@ impl<'a> Shader<'a> {
         let curved = if let Some(swept) = ground.swept {
             curved_lights = CurvedLights::new(
                 (self.scene, self.prepared.skies(self.scene)),
-                swept,
+                (swept, ground.prepared.surface().relief_depth()),
                 block,
                 pairs.clone(),
             );
@@ -227,8 +258,12 @@ impl<'a> Shader<'a> {
         footprints.clear();
         if let Some(field) = field.filter(|_| rule.is_traced) {
             footprints.extend(pairs.map(|index| {
-                let pair = block.pair(index);
-                Footprints::before_hits(&pair.uv, &pair.view(), field, pair.covered_bits())
+                let (pair, view) = (block.pair(index), block.pair(index).view());
+                let pixels = Footprints::before_hits(&pair.uv, &view, field, pair.covered_bits());
+                match pair.bend() {
+                    Some(bend) => pixels.bent(&view, &bend, field),
+                    None => pixels,
+                }
             }));
             return Footprints::find_hits(footprints, field, rule);
         }
@@ -236,7 +271,11 @@ impl<'a> Shader<'a> {
             let pair = block.pair(index);
             // Where there is no relief, the view changes nothing and is not computed.
             let view = if field.is_some() { pair.view() } else { [PixelLanes::ZERO; 3] };
-            Footprints::of_quads(&pair.uv, &view, field, rule, pair.covered_bits())
+            let pixels = Footprints::of_quads(&pair.uv, &view, field, rule, pair.covered_bits());
+            match (pair.bend(), field) {
+                (Some(bend), Some(field)) => pixels.bent(&view, &bend, field),
+                _ => pixels,
+            }
         }));
     }
 
@@ -391,5 +430,14 @@ impl<'a> Shader<'a> {
         let point = self.is_lit().then(|| surface_point(pair.planes[lane / 4], place))??;
         let Scene { camera, lights, sky, .. } = self.scene;
         Some(LocalLights::at(&point, camera.eye, lights, sky))
+    }
+}
+
+/// Multiplies colours by those of the meshes.
+fn tint<'a>(pairs: impl Iterator<Item = QuadPair<'a>>, colors: &mut [[PixelLanes; 3]]) {
+    for (color, pair) in colors.iter_mut().zip(pairs) {
+        if let Some(tint) = pair.tint() {
+            *color = std::array::from_fn(|c| color[c] * tint[c]);
+        }
     }
 }

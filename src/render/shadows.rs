@@ -14,6 +14,7 @@
 //! ```
 
 use super::ground::{Ground, LitPiece};
+use super::points::HiddenLights;
 use super::shade::{ShadeScratch, Shader};
 use crate::light::exact::{Occluders, Receiver};
 use crate::light::{Disc, Vectors, cross, repeat_length};
@@ -24,11 +25,11 @@ use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
 
 /// Rays of a pixel to each sun; a square number.
-const RAYS: usize = 16;
+pub(super) const RAYS: usize = 16;
 
 /// Those of them that go first: to the four points nearest to the disc's edge, from places all over
 /// the pixel.
-const FIRST: [usize; 4] = [2, 4, 9, 11];
+pub(super) const FIRST: [usize; 4] = [2, 4, 9, 11];
 
 /// A sun, and the triangles that may hide it from a block.
 pub(super) struct Hidden {
@@ -46,10 +47,10 @@ impl Shader<'_> {
     /// there.
     pub(super) fn shadow(
         &self,
-        ground: &Ground,
-        lit: &LitPiece,
+        (ground, lit): (&Ground, &LitPiece),
         block: &QuadBlock,
         scratch: &mut ShadeScratch,
+        hidden_lights: &mut HiddenLights,
         colors: &mut [[PixelLanes; 3]],
     ) {
         let [sky, suns @ ..] = lit.apart else { return };
@@ -75,7 +76,17 @@ impl Shader<'_> {
                 (0..3).for_each(|c| color[c] += part[c] * seen);
             }
         }
+        // The others are points.
+        let lights = self.scene.lights.iter().zip(&mut hidden_lights.0);
+        let suns = lights.filter(|(light, _)| matches!(light, Light::Sun { .. }));
+        suns.zip(hidden.into_iter().flatten()).for_each(|((_, to), hidden)| *to = hidden);
     }
+}
+
+/// Where a ray starts in its pixel, in pixels from the middle: by rows and columns.
+pub(super) fn ray_offset(ray: usize) -> [f32; 2] {
+    const SIDE: usize = 4;
+    [ray % SIDE, ray / SIDE].map(|i| (i as f32 + 0.5) / SIDE as f32 - 0.5)
 }
 
 /// The parts of each sun that are not seen from the pixels of a block's pairs: sun by sun, pair by
@@ -107,13 +118,13 @@ fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<
     let suns: Vec<_> = scene
         .lights
         .iter()
-        .map(|light| {
+        .filter_map(|light| {
             let Light::Sun { to_light, angular_size, .. } = *light else { return None };
             let disc = Disc::new(to_light.normalize_or_zero(), angular_size);
             let triangles = occluders.between(receiver, &disc);
             Some(Hidden::new(&disc, triangles))
         })
-        .collect::<Option<_>>()?;
+        .collect();
     suns.iter().any(|sun| !sun.triangles.is_empty()).then_some(suns)
 }
 
@@ -251,10 +262,9 @@ impl Hidden {
         places: &Places,
         ray: usize,
     ) -> PixelLanes {
-        // Over the pixel in rows and columns, over the disc in another order, so that no part of
-        // the one goes with a part of the other.
-        const SIDE: usize = 4;
-        let [x, y] = [ray % SIDE, ray / SIDE].map(|i| (i as f32 + 0.5) / SIDE as f32 - 0.5);
+        // Over the disc they go in another order than over the pixel, so that no part of the one goes
+        // with a part of the other.
+        let [x, y] = ray_offset(ray);
         let direction = self.directions[ray * 7 % RAYS];
         let from = [0, 1, 2].map(|i| from[i] + places.steps[0][i] * x + places.steps[1][i] * y);
         let mut hits = PixelLanes::ZERO;

@@ -1,5 +1,6 @@
 //! What a surface is made of.
 
+use super::cut_out::CutOut;
 use super::light::is_light;
 use crate::texture::{Surface, Texture};
 use glam::Vec3;
@@ -26,6 +27,8 @@ pub struct Material {
     pub emissive: Vec3,
     /// Textures of these numbers.
     pub maps: MaterialMaps,
+    /// Holes; `None`, the default, has none.
+    pub cut_out: Option<CutOut>,
     /// Colour, normals and relief; `None` draws the plain base colour. Shared between materials that use
     /// the same maps.
     pub surface: Option<Arc<Surface>>,
@@ -41,6 +44,7 @@ impl Default for Material {
             roughness: 1.0,
             emissive: Vec3::ZERO,
             maps: MaterialMaps::default(),
+            cut_out: None,
             surface: None,
         }
     }

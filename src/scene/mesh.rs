@@ -5,6 +5,7 @@
 //! keep their own handedness; a triangle without area, in space or in the texture, adds nothing to
 //! the average.
 
+use super::light::is_light;
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec2, Vec3};
 
@@ -28,6 +29,9 @@ pub struct Mesh {
     pub tex_coords: Vec<Vec2>,
     /// One unit vector per position.
     pub normals: Vec<Vec3>,
+    /// Linear RGB, 0 to 1e6, one per position, that multiplies the material's base colour; empty:
+    /// white.
+    pub colors: Vec<Vec3>,
     /// `dP/du` and `dP/dv`, one pair per position where there are texture coordinates, else empty.
     pub tangents: Vec<[Vec3; 2]>,
 }
@@ -77,12 +81,13 @@ impl Mesh {
             let turned = along(normals, *n);
             (turned * (n.as_dvec3().length() / turned.length())).as_vec3()
         };
-        let Self { name, material, triangles, positions, tex_coords, normals: own, tangents } =
-            self;
+        let Self { name, material, triangles, positions, tex_coords, normals: own, .. } = self;
+        let Self { tangents, colors, .. } = self;
         into.name.clone_from(name);
         into.material = *material;
         into.triangles.clone_from(triangles);
         into.tex_coords.clone_from(tex_coords);
+        into.colors.clone_from(colors);
         into.positions.clear();
         into.positions.extend(positions.iter().map(|p| (along([x, y, z], *p) + origin).as_vec3()));
         into.normals.clear();
@@ -145,6 +150,12 @@ impl Mesh {
             return Err(format!(
                 "{num} positions need as many normals, and as many texture coordinates or none"
             ));
+        }
+        if ![0, num].contains(&self.colors.len()) {
+            return Err(format!("{num} positions need as many colours, or none"));
+        }
+        if !self.colors.iter().all(|color| is_light(*color)) {
+            return Err("colours must be within 0 to 1e6".into());
         }
         if self.tangents.len() != self.tex_coords.len() {
             return Err("tangents are missing; Mesh::new makes them".into());
@@ -277,6 +288,8 @@ mod tests {
         assert!(with(|m| m.triangles[0][1] = 4).is_err());
         assert!(with(|m| m.normals.clear()).is_err());
         assert!(with(|m| m.tangents.clear()).is_err());
+        assert!(with(|m| m.colors = vec![Vec3::ONE; 3]).is_err());
+        assert!(with(|m| m.colors = vec![Vec3::NEG_ONE; 4]).is_err());
         assert!(with(|m| m.positions[0].x = f32::NAN).is_err());
         assert!(with(|m| m.tex_coords[0].y = f32::INFINITY).is_err());
     }

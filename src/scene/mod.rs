@@ -4,6 +4,7 @@
 pub(crate) mod angle;
 mod builtin;
 mod camera;
+mod cut_out;
 mod light;
 mod material;
 mod mesh;
@@ -12,6 +13,7 @@ mod whole;
 
 pub use builtin::builtin;
 pub use camera::{Camera, Intrinsics, PoseAxes};
+pub use cut_out::CutOut;
 pub use light::Light;
 pub use material::{Finish, Material, MaterialMaps};
 pub use mesh::Mesh;

@@ -1,8 +1,8 @@
 //! Where rays may pass a relief: how flat they must go, from how the mesh bends.
 //!
 //! A ray that enters a relief of depth `T` over a surface of normal curvature `k`, with the cosine
-//! `c` between the normal and the ray, gets `c^2 / 2k` deep before it rises again. If that is more
-//! than `T`, it hits whatever the relief is.
+//! `c` between the normal and the ray, gets `(1 - sqrt(1 - c^2)) / k` deep before it rises again. If
+//! that is more than `T`, it hits whatever the relief is.
 
 use super::NONE;
 use crate::scene::Mesh;
@@ -10,7 +10,7 @@ use glam::Vec3;
 
 /// What the square of the cosine may be greater by and a ray still be followed: curvature is known
 /// only at vertices.
-const MARGIN: f32 = 1.3;
+const MARGIN: f32 = 1.05;
 
 /// Most triangles that the curvature of a vertex is looked for around it.
 const MOST_RINGS: usize = 32;
@@ -35,7 +35,9 @@ pub(super) fn limits(mesh: &Mesh, offsets: &[Vec3], neighbors: &[[u32; 3]]) -> V
             })
             .collect();
     }
-    bends.into_iter().map(|bend| bend.map(|k| 2.0 * MARGIN * k)).collect()
+    // On a circle: `1 - c^2 = (1 - k T)^2` where the ray is deepest.
+    let limit = |k: f32| MARGIN * if k < 1.0 { (2.0 - k) * k } else { 1.0 };
+    bends.into_iter().map(|bend| bend.map(limit)).collect()
 }
 
 /// The greatest curvature along a triangle's edges, of its front and of its back, in units of one

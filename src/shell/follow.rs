@@ -83,6 +83,22 @@ struct Prism {
 impl Shell {
     /// What a ray meets that enters the relief of the mesh through a triangle, or beside it.
     pub fn follow(&self, mesh: &Mesh, field: &HeightField, triangle: u32, ray: &ViewRay) -> Met {
+        self.walk::<false>(mesh, field, triangle, ray)
+    }
+
+    /// The same where a place within the relief, not before the hit, will do: a few heights are
+    /// looked at, and none between. What is said to be nothing may be a hit.
+    pub fn probe(&self, mesh: &Mesh, field: &HeightField, triangle: u32, ray: &ViewRay) -> Met {
+        self.walk::<true>(mesh, field, triangle, ray)
+    }
+
+    fn walk<const PROBES: bool>(
+        &self,
+        mesh: &Mesh,
+        field: &HeightField,
+        triangle: u32,
+        ray: &ViewRay,
+    ) -> Met {
         let along = ray.direction.normalize_or(DVec3::Z);
         let (x, y) = along.any_orthonormal_pair();
         // Turned so that what is seen from the front is counter-clockwise.
@@ -91,13 +107,15 @@ impl Shell {
         if prism.area(0.0) < 0.0 {
             walk.side = -1.0;
         }
-        walk.run(triangle)
+        walk.run::<PROBES>(triangle)
     }
 }
 
 impl Walk<'_> {
-    fn run(&self, triangle: u32) -> Met {
-        let Some(mut prism) = self.entry(triangle) else { return Met::Nothing(self.distance_of(triangle)) };
+    fn run<const PROBES: bool>(&self, triangle: u32) -> Met {
+        let Some(mut prism) = self.entry(triangle) else {
+            return Met::Nothing(self.distance_of(triangle));
+        };
         let mut from = self.point(&prism, prism.shares(0.0), 0.0);
         let (mut entry, mut goes_down, mut is_beyond) = (3, true, false);
         for _ in 0..MOST_TRIANGLES {
@@ -106,14 +124,19 @@ impl Walk<'_> {
             // Find the side by which the ray leaves the prism, unless that is above or below.
             let left = if goes_down { 1.0 - t } else { t };
             let edges = if is_beyond { 0..0 } else { 0..3 };
-            let exits = edges.map(|edge| (prism.exit(edge, [t, way, self.side], edge == entry), edge));
+            let exits =
+                edges.map(|edge| (prism.exit(edge, [t, way, self.side], edge == entry), edge));
             let (rise, edge) = exits.fold((left, 3), |a, b| if b.0 < a.0 { b } else { a });
-            if let Some(hit) = self.pieces(&prism, &mut from, (t + way * rise, edge)) {
+            if let Some(hit) = self.pieces::<PROBES>(&prism, &mut from, (t + way * rise, edge)) {
                 return Met::Relief(hit);
             }
             if edge == 3 {
                 // At full depth every height is met.
-                return if goes_down { Met::Relief(self.hit(&prism, &from)) } else { Met::Nothing(self.distance(&prism, &from)) };
+                return if goes_down {
+                    Met::Relief(self.hit(&prism, &from))
+                } else {
+                    Met::Nothing(self.distance(&prism, &from))
+                };
             }
             match self.shell.neighbors[prism.triangle as usize][edge] {
                 // Beyond a border the last triangle goes on: nobody looks through a seam.
@@ -160,7 +183,9 @@ impl Walk<'_> {
         let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
         let across = |v: DVec3| DVec2::new(v.dot(*x), v.dot(*y));
         let offsets = corners.map(|i| shell.offsets[i].as_dvec3() * *side);
-        let bend = (offsets[1] - offsets[0]).length_squared().max((offsets[2] - offsets[0]).length_squared());
+        let bend = (offsets[1] - offsets[0])
+            .length_squared()
+            .max((offsets[2] - offsets[0]).length_squared());
         let bend = (bend / offsets[0].length_squared().max(f64::MIN_POSITIVE)).sqrt();
         Prism {
             triangle,
@@ -172,20 +197,34 @@ impl Walk<'_> {
 
     /// Goes on within a prism to a depth, where the ray leaves by an edge or, for 3, by none; gives
     /// the hit, if there is one.
-    fn pieces(&self, prism: &Prism, from: &mut Point, (end, edge): (f64, usize)) -> Option<ReliefHit> {
+    fn pieces<const PROBES: bool>(
+        &self,
+        prism: &Prism,
+        from: &mut Point,
+        (end, edge): (f64, usize),
+    ) -> Option<ReliefHit> {
         let start = from.place.depth;
         for i in 1..=prism.num_pieces {
             let is_last = i == prism.num_pieces;
             let part = f64::from(i) / f64::from(prism.num_pieces);
             let depth = if is_last { end } else { start + (end - start) * part };
-            let shares = if is_last && edge < 3 { prism.shares_on(edge, depth) } else { prism.shares(depth) };
+            let shares = if is_last && edge < 3 {
+                prism.shares_on(edge, depth)
+            } else {
+                prism.shares(depth)
+            };
             // A triangle seen edge on has no place.
             if !shares.iter().all(|share| share.is_finite()) {
                 return Some(self.hit(prism, from));
             }
             let to = self.point(prism, shares, depth);
-            if let Some(part) = self.field.first_hit(&from.place, &to.place) {
-                let shares = [0, 1, 2].map(|i| from.shares[i] + (to.shares[i] - from.shares[i]) * part);
+            let part = match PROBES {
+                true => self.field.holds(&to.place).then_some(1.0),
+                false => self.field.first_hit(&from.place, &to.place),
+            };
+            if let Some(part) = part {
+                let shares =
+                    [0, 1, 2].map(|i| from.shares[i] + (to.shares[i] - from.shares[i]) * part);
                 let place = from.place.toward(&to.place, part);
                 return Some(self.hit(prism, &Point { shares, place }));
             }

@@ -71,7 +71,8 @@ impl Shell {
             let to_eye = (eye - mesh.positions[i as usize]).normalize_or_zero();
             to_eye.dot(mesh.normals[i as usize])
         });
-        let [least, most] = cosines.iter().fold([f32::MAX, f32::MIN], |[a, b], c| [a.min(*c), b.max(*c)]);
+        let [least, most] =
+            cosines.iter().fold([f32::MAX, f32::MIN], |[a, b], c| [a.min(*c), b.max(*c)]);
         if least > 0.0 {
             least * least < limits[0]
         } else if most < 0.0 {
@@ -91,6 +92,7 @@ impl Shell {
 
 /// Whether a triangle of a mesh is seen from behind.
 pub fn is_seen_from_behind(mesh: &Mesh, triangle: u32, eye: Vec3) -> bool {
-    let [a, b, c] = mesh.triangles[triangle as usize].map(|i| mesh.positions[i as usize].as_dvec3());
+    let [a, b, c] =
+        mesh.triangles[triangle as usize].map(|i| mesh.positions[i as usize].as_dvec3());
     (b - a).cross(c - a).dot(eye.as_dvec3() - a) < 0.0
 }

@@ -16,7 +16,14 @@ pub(super) fn find(mesh: &Mesh) -> Vec<[u32; 3]> {
         let (i, j) = (edge as usize % 3, (edge as usize + 1) % 3);
         [triangle[i], triangle[j]]
     };
+    // A triangle without area lies between two others, as at the poles of spheres: they are
+    // neighbours.
+    let has_area = |edge: &u32| {
+        let [a, b, c] = mesh.triangles[*edge as usize / 3].map(|i| places[i as usize]);
+        a != b && b != c && c != a
+    };
     let mut edges: Vec<([u32; 2], u32)> = (0..3 * mesh.triangles.len() as u32)
+        .filter(has_area)
         .map(|edge| {
             let [a, b] = ends(edge).map(|i| places[i]);
             ([a.min(b), a.max(b)], edge)
@@ -29,7 +36,8 @@ pub(super) fn find(mesh: &Mesh) -> Vec<[u32; 3]> {
         let &[(_, a), (_, b)] = pair else { continue };
         let ([a0, a1], [b0, b1]) = (ends(a), ends(b));
         // Neighbours of one orientation go along their edge in opposite directions.
-        let is_whole = places[a0] == places[b1] && places[a1] == places[b0] && places[a0] != places[a1];
+        let is_whole =
+            places[a0] == places[b1] && places[a1] == places[b0] && places[a0] != places[a1];
         let is_smooth = |i: usize, j: usize| mesh.normals[i].dot(mesh.normals[j]) >= SMOOTH;
         if is_whole && is_smooth(a0, b1) && is_smooth(a1, b0) {
             neighbors[a as usize / 3][a as usize % 3] = b;

@@ -47,6 +47,29 @@ impl Texture {
         Self::new([image.width, image.height], values, 3, (wrap, image.scale))
     }
 
+    /// Of what is there of a surface, for [`CutOut`](crate::CutOut): opacity from 0 to 1 that is there
+    /// where it is at least `threshold`. On the finest level 0.5 is the edge, and coarser levels hold
+    /// the share of their texels that is there.
+    ///
+    /// # Errors
+    /// As [`Self::gray`].
+    pub fn opacity(mut image: GrayImage, wrap: Wrap, threshold: f32) -> Result<Self> {
+        // Steeper than the opacity, so that means of few texels are nearly shares, too.
+        const STEEP: f32 = 4.0;
+        let is_there = |opacity: u16| f32::from(opacity) >= threshold * 65535.0;
+        let shares =
+            image.texels.iter().map(|opacity| u16::from(is_there(*opacity)) * u16::MAX).collect();
+        for texel in &mut image.texels {
+            let share = 0.5 + (f32::from(*texel) / 65535.0 - threshold) * STEEP;
+            *texel = (share.clamp(0.0, 1.0) * 65535.0).ceil() as u16;
+        }
+        let finest = image.texels;
+        let size = [image.width, image.height];
+        let mut texture = Self::new(size, shares, 1, (wrap, 1.0))?;
+        texture.levels[0].values = finest;
+        Ok(texture)
+    }
+
     fn new(
         size: [u32; 2],
         values: Vec<u16>,
@@ -89,12 +112,7 @@ impl Texture {
     /// repeats: as textures are read where nothing hides texels, along the longer side by up to
     /// eight look-ups.
     pub(crate) fn over(&self, place: [f32; 2], [dx, dy]: [[f32; 2]; 2]) -> [f32; 3] {
-        let size = self.size().map(|n| n as f32);
-        let length = |d: [f32; 2]| {
-            let [x, y] = [d[0] * size[0], d[1] * size[1]];
-            (x * x + y * y).sqrt()
-        };
-        let (long, [most, least]) = match [length(dx), length(dy)] {
+        let (long, [most, least]) = match [self.length(dx), self.length(dy)] {
             [x, y] if x >= y => (dx, [x, y]),
             [x, y] => (dy, [y, x]),
         };
@@ -111,6 +129,12 @@ impl Texture {
             (0..3).for_each(|c| sum[c] += fine[c] + (coarse[c] - fine[c]) * part);
         }
         sum.map(|sum| sum / num)
+    }
+
+    /// How many of the finest texels a way in repeats is long.
+    pub(crate) fn length(&self, way: [f32; 2]) -> f32 {
+        let [x, y] = [0, 1].map(|i| way[i] * self.size()[i] as f32);
+        (x * x + y * y).sqrt()
     }
 
     /// The level whose texels are not wider than so many of the finest, and how far it is from
@@ -214,6 +238,21 @@ mod tests {
             let near = texture.over([0.2, 0.8], [[1e-3, 0.0], [0.0, 1e-3]]);
             assert_eq!(near, texture.at([0.2, 0.8]));
         }
+    }
+
+    #[test]
+    fn levels_of_opacity_hold_the_share_that_is_there() {
+        // Thin blades: one column in five, of uneven opacity, on what is nearly there.
+        let blade = |x: u32, y: u32| if x.is_multiple_of(5) { 0.6 + 0.2 * (y % 3) as f32 } else { 0.45 };
+        let image = GrayImage::from_fn(160, 64, blade);
+        let texture = Texture::opacity(image, Wrap::Repeat, 0.5).expect("valid");
+        for level in &texture.levels[1..] {
+            let sum: f32 = level.values.iter().map(|value| f32::from(*value)).sum();
+            let share = sum / (65535.0 * level.values.len() as f32);
+            assert!((share - 0.2).abs() < 1e-3, "{:?}: {share}", level.size);
+        }
+        let near = [0.0, 1.0].map(|x| texture.at([(x + 0.5) / 160.0, 0.5 / 64.0])[0]);
+        assert!(near[0] > 0.5 && near[1] < 0.5, "{near:?}");
     }
 
     #[test]

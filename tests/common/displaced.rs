@@ -1,6 +1,8 @@
 //! The relief as real geometry: each triangle cut into many, whose corners are moved down by the
 //! height map. Drawn without any relief, it is what a relief must look like.
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
+use crate::common::floor_scene;
 use basrelief::texture::{ColorImage, FULL, Surface, SurfaceMaps, srgb_from_linear};
 use basrelief::{Camera, Filter, Frame, Layer, Material, Mesh, Renderer, Scene, Settings};
 use glam::{Vec2, Vec3};
@@ -32,8 +34,7 @@ pub fn grid(num: [u32; 2], at: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2)) -> Mesh 
     let index = |x: u32, y: u32| y * (num[0] + 1) + x;
     let quads = (0..num[1]).flat_map(|y| (0..num[0]).map(move |x| [x, y]));
     let triangles = quads.flat_map(|[x, y]| {
-        let [a, b, c, d] =
-            [index(x, y), index(x + 1, y), index(x + 1, y + 1), index(x, y + 1)];
+        let [a, b, c, d] = [index(x, y), index(x + 1, y), index(x + 1, y + 1), index(x, y + 1)];
         [[a, b, c], [a, c, d]]
     });
     Mesh::new(
@@ -77,6 +78,18 @@ pub fn scene(mesh: Mesh, maps: SurfaceMaps, distance: f32) -> Scene {
         },
         ..Scene::default()
     }
+}
+
+/// A floor of stones from above, with a ball that is sunk half into it.
+pub fn ball_in_stones(maps: SurfaceMaps) -> Scene {
+    let mut scene = floor_scene(Surface::new(maps).expect("valid maps"), 0.5);
+    let mut ball = sphere([48, 24]);
+    ball.positions.iter_mut().for_each(|position| *position *= 0.8);
+    ball.material = 1;
+    scene.meshes.push(ball);
+    scene.materials.push(Material { base_color: Vec3::new(0.8, 0.3, 0.2), ..Default::default() });
+    (scene.camera.eye, scene.camera.target) = (Vec3::new(0.0, 1.5, 2.2), Vec3::ZERO);
+    scene
 }
 
 /// The scene with each triangle of the meshes that have relief cut into `pieces` squared, whose
@@ -136,9 +149,11 @@ fn displaced_mesh(mesh: &Mesh, surface: &Surface, pieces: u32, eye: Vec3) -> Mes
                 let b = [1.0 - b[0] - b[1], b[0], b[1]];
                 let place = corners[0].1 * b[0] + corners[1].1 * b[1] + corners[2].1 * b[2];
                 let depth = 1.0 - height(surface, place);
-                cut.positions.push((0..3).fold(Vec3::ZERO, |sum, i| {
-                    sum + (corners[i].0 - corners[i].2 * depth) * b[i]
-                }));
+                cut.positions.push(
+                    (0..3).fold(Vec3::ZERO, |sum, i| {
+                        sum + (corners[i].0 - corners[i].2 * depth) * b[i]
+                    }),
+                );
                 cut.tex_coords.push(place);
             }
         }
@@ -191,9 +206,7 @@ pub fn show(displaced: &Scene, settings: &Settings) -> Shown {
     let coverage = renderer.render();
     let depth = renderer.render_layers(&[Layer::Depth]).floats(Layer::Depth).to_vec();
     let [width, height] = [settings.width, settings.height].map(|side| side * FINER);
-    renderer
-        .set_settings(Settings { width, height, msaa: 1, ..plain })
-        .expect("valid settings");
+    renderer.set_settings(Settings { width, height, msaa: 1, ..plain }).expect("valid settings");
     let fine = renderer.render();
     Shown { coverage, colors: blurred(&fine, settings), depth }
 }
@@ -214,7 +227,9 @@ fn blurred(fine: &Frame, settings: &Settings) -> Frame {
             let (mut sum, mut weights) = ([0.0_f32; 4], 0.0);
             for ([dx, dy], weight) in &offsets {
                 let at = [x * finer + dx, y * finer + dy];
-                if (0..fine.width as i32).contains(&at[0]) && (0..fine.height as i32).contains(&at[1]) {
+                if (0..fine.width as i32).contains(&at[0])
+                    && (0..fine.height as i32).contains(&at[1])
+                {
                     let pixel = fine.pixels[(at[1] * fine.width as i32 + at[0]) as usize];
                     (0..4).for_each(|c| sum[c] += pixel[c] * weight);
                     weights += weight;
@@ -250,12 +265,4 @@ pub fn decibels(a: &Frame, b: &Frame) -> f64 {
 pub fn depths_within(a: &[f32], b: &[f32], most: f32) -> f64 {
     let both = || a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
     both().filter(|(a, b)| (**a - **b).abs() <= most).count() as f64 / both().count() as f64
-}
-
-/// The difference of depths that a share of the pixels that both see does not exceed.
-pub fn depth_quantile(a: &[f32], b: &[f32], share: f64) -> f32 {
-    let both = a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
-    let mut all: Vec<f32> = both.map(|(a, b)| (a - b).abs()).collect();
-    all.sort_by(f32::total_cmp);
-    all[((all.len() - 1) as f64 * share) as usize]
 }

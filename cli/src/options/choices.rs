@@ -126,6 +126,7 @@ words! {
     HeightSense: HEIGHT_SENSES;
     NormalY: NORMAL_YS;
     Wrap: WRAPS;
+    PoseAxes: POSE_AXES;
 }
 
 /// Writes the word of a value, for `serde(with = "choices")`.

@@ -3,7 +3,7 @@
 //! Each function reads one value that may be left out. Its error carries no place; the TOML reader
 //! adds the line.
 
-use crate::options::values::{self, check};
+use crate::options::values::{self, Pose, check};
 use basrelief::Light;
 use glam::Vec3;
 use serde::de::Error;
@@ -24,6 +24,7 @@ checked! {
     crease_angle: f32, check::crease_angle;
     field_of_view: f32, check::field_of_view;
     intrinsics: [f32; 4], check::intrinsics;
+    pose: Pose, check::pose;
     turn: f32, check::turn;
     unit: f32, check::unit;
     direction: Vec3, check::direction;

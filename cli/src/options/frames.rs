@@ -1,5 +1,6 @@
 //! Many frames: which there are, which of them are drawn here, from where, and into which files.
 
+use crate::options::camera_list::CameraList;
 use crate::options::camera_path::{CameraPath, Places};
 use crate::options::shard::Shard;
 use crate::options::values::digits;
@@ -20,6 +21,10 @@ pub(crate) struct FramesOptions {
     /// frame, and any of eye, target, up and fov
     #[arg(long, value_name = "FILE")]
     camera_path: Option<PathBuf>,
+    /// Draw a frame for each line of a file (-: stdin), an object of JSON with the keys eye, target,
+    /// up, fov, intrinsics, pose, pose-axes and near
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["turntable", "camera_path"])]
+    cameras: Option<PathBuf>,
     /// Draw only these frames of them: 7, 1-100, 1-100x3 (every third), or several with commas;
     /// those that do not exist are left out
     #[arg(long, value_name = "LIST", value_parser = FrameList::parse)]
@@ -64,6 +69,7 @@ enum Motion {
     Still,
     Turntable(u32),
     Path(CameraPath),
+    List(CameraList),
 }
 
 /// The pictures that this process draws.
@@ -79,10 +85,11 @@ pub(crate) struct Sequence {
 impl FramesOptions {
     /// The pictures that the options ask for; `output` is the file, or the pattern of file names.
     pub(crate) fn sequence(&self, output: Option<&Path>) -> Result<Sequence, Refusal> {
-        let motion = match (&self.turntable, &self.camera_path) {
-            (Some(num), _) => Motion::Turntable(*num),
-            (None, Some(path)) => Motion::Path(CameraPath::read(path)?),
-            (None, None) => return self.still(output),
+        let motion = match self {
+            Self { turntable: Some(num), .. } => Motion::Turntable(*num),
+            Self { camera_path: Some(path), .. } => Motion::Path(CameraPath::read(path)?),
+            Self { cameras: Some(path), .. } => Motion::List(CameraList::read(path)?),
+            _ => return self.still(output),
         };
         let output = output.unwrap_or(Path::new("frame_####.png"));
         if !file_name(output).contains('#') {
@@ -95,6 +102,7 @@ impl FramesOptions {
         let [first, last] = match &motion {
             Motion::Path(path) => path.range(),
             Motion::Turntable(num) => [1, *num],
+            Motion::List(list) => [1, list.num()],
             Motion::Still => [1, 1],
         };
         let is_asked = |frame: &u32| self.frames.as_ref().is_none_or(|list| list.has(*frame));
@@ -118,9 +126,10 @@ impl FramesOptions {
             ("--shards", self.shards.is_some()),
         ];
         if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
-            return Err(
-                format!("{option}: needs many frames, from --turntable or --camera-path").into()
-            );
+            return Err(format!(
+                "{option}: needs many frames, from --turntable, --camera-path or --cameras"
+            )
+            .into());
         }
         let output = output.unwrap_or(Path::new("basrelief.png")).into();
         Ok(Sequence { motion: Motion::Still, numbers: vec![1], output, remark: None })
@@ -157,11 +166,12 @@ impl Sequence {
     }
 
     /// The cameras of the frames, from that of the scene.
-    pub(crate) fn cameras(&self, start: Camera) -> Cameras {
+    pub(crate) fn cameras(&self, start: Camera) -> Cameras<'_> {
         match &self.motion {
             Motion::Still => Cameras::Still(start),
             Motion::Turntable(num) => Cameras::Turntable(start, *num),
             Motion::Path(path) => Cameras::Path(path.places(&start)),
+            Motion::List(list) => Cameras::List(start, list),
         }
     }
 }
@@ -180,18 +190,20 @@ fn numbered(name: &str, number: u32) -> String {
 }
 
 /// Where the camera is in each frame.
-pub(crate) enum Cameras {
+pub(crate) enum Cameras<'a> {
     Still(Camera),
     Turntable(Camera, u32),
     Path(Places),
+    List(Camera, &'a CameraList),
 }
 
-impl Cameras {
+impl Cameras<'_> {
     pub(crate) fn camera(&self, number: u32) -> Camera {
         match self {
             Self::Still(camera) => *camera,
             Self::Turntable(camera, num) => turned(camera, number - 1, *num),
             Self::Path(places) => places.camera(number),
+            Self::List(start, list) => list.camera(number, start),
         }
     }
 }

@@ -21,12 +21,12 @@ use std::path::PathBuf;
 
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct SceneOptions {
-    /// What to draw: an OBJ file with its MTL files and images, or a scene file (TOML, see
-    /// --save-scene), which other options override; without one, a built-in scene
+    /// What to draw: an OBJ file with its MTL files and images, a glTF file (.gltf, .glb), or a scene
+    /// file (TOML, see --save-scene), which other options override; without one, a built-in scene
     #[arg(value_name = "SCENE")]
     pub(crate) model: Option<PathBuf>,
     /// Where SCENE has no normals: faces that meet at more than this angle, 0 to 180 degrees, show
-    /// an edge [default: 60]
+    /// an edge [default: 60, of glTF 0]
     #[arg(long, value_name = "DEG", value_parser = values::crease_angle, allow_hyphen_values = true, requires = "model")]
     pub(crate) crease_angle: Option<f32>,
     #[command(flatten)]
@@ -160,11 +160,11 @@ pub(crate) struct CameraOptions {
     /// Where the camera is and how it lies: the 4x4 matrix from its axes to the world, 16 numbers
     /// row by row; in place of --eye, --target and --up
     #[arg(long, value_name = "M11,M12,...,M44", value_parser = values::pose, allow_hyphen_values = true, conflicts_with_all = ["eye", "target", "up"])]
-    #[serde(skip)]
+    #[serde(deserialize_with = "file_values::pose")]
     pose: Option<Pose>,
     /// The axes of --pose [default: opencv]
     #[arg(long, value_name = "WHOSE", value_parser = one_of(choices::POSE_AXES), requires = "pose")]
-    #[serde(skip)]
+    #[serde(with = "choices")]
     pose_axes: Option<PoseAxes>,
     /// Distance from the eye before which nothing is drawn, in the scene's units
     #[arg(long, value_name = "D", value_parser = values::above_zero, allow_hyphen_values = true)]
@@ -204,10 +204,11 @@ pub(crate) struct LightOptions {
 }
 
 impl SceneOptions {
-    /// How a picture of the scene is where no option says so: the built-in scene is lit, others where
-    /// a light is given.
+    /// How a picture of the scene is where no option says so: the built-in scene and glTF, whose
+    /// materials are made for it, are lit, others where a light is given.
     pub(crate) fn look(&self) -> Look {
-        match self.model {
+        match &self.model {
+            Some(model) if load::is_gltf(model) => Look { is_lit: true, tone: Tone::Neutral },
             None => Look { is_lit: true, tone: Tone::Neutral },
             Some(_) => Look { is_lit: self.has_lights(), ..Look::default() },
         }
@@ -282,7 +283,7 @@ impl SceneOptions {
                 .collect(),
             keep_normals: is_lit,
             aspect: settings.width as f32 / settings.height as f32,
-            crease_angle: self.crease_angle.unwrap_or(default.crease_angle),
+            crease_angle: self.crease_angle,
             allow_outside: limits.allow_outside.unwrap_or(default.allow_outside),
             max_image_side: limits.max_image_side.unwrap_or(default.max_image_side),
             max_image_mib: limits.max_image_mib.unwrap_or(default.max_image_mib),
@@ -347,6 +348,33 @@ impl From<&Camera> for CameraOptions {
 }
 
 impl CameraOptions {
+    /// Refuses what contradicts itself; on the command line the options' own rules do.
+    pub(crate) fn check(&self) -> Result<(), &'static str> {
+        let is_placed = self.eye.is_some() || self.target.is_some() || self.up.is_some();
+        match self.pose {
+            Some(_) if is_placed => Err("a pose takes the place of eye, target and up"),
+            None if self.pose_axes.is_some() => Err("pose-axes needs a pose"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Drops a pose where `over` says where the eye is, and the other way round.
+    pub(crate) fn make_way_for(&mut self, over: &Self) {
+        if over.pose.is_some() {
+            (self.eye, self.target, self.up) = (None, None, None);
+        }
+        if over.eye.is_some() || over.target.is_some() || over.up.is_some() {
+            (self.pose, self.pose_axes) = (None, None);
+        }
+    }
+
+    /// A camera with what these say.
+    pub(crate) fn placed(&self, start: &Camera) -> Camera {
+        let mut camera = *start;
+        self.place(&mut camera);
+        camera
+    }
+
     fn place(&self, camera: &mut Camera) {
         camera.eye = self.eye.unwrap_or(camera.eye);
         camera.target = self.target.unwrap_or(camera.target);

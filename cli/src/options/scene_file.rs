@@ -7,7 +7,7 @@
 //! relief-depth = 0.04
 //! [material.brick]                # the same keys for the material of that name
 //! height = "brick_height.png"
-//! [camera]                        # --eye, --target, --up, --fov, --intrinsics, --near
+//! [camera]                        # --eye, --target, --up, --fov, --intrinsics, --pose, --near
 //! eye = [3.0, 2.0, 5.0]
 //! [light]                         # --sky, --background, and lights
 //! background = "skyblue"
@@ -60,7 +60,10 @@ pub(crate) fn read_into(
     };
     let Some(path) = scene.model.take_if(|path| is_scene_file(path)) else { return Ok(()) };
     let over = SceneFile::of(scene, settings).table()?;
-    let mut table = SceneFile::read(&path)?.table()?;
+    let mut file = SceneFile::read(&path)?;
+    file.camera.check().map_err(|reason| Refusal::file(&path, reason))?;
+    file.camera.make_way_for(&scene.camera);
+    let mut table = file.table()?;
     overlay(&mut table, over);
     let merged: SceneFile = table.try_into().map_err(|e| Refusal::file(&path, e))?;
     (*scene, *settings) = merged.options();

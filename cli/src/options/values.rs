@@ -2,7 +2,7 @@
 //! expected. Scene files hold the same values, bounded by the same checks: see `file_values`.
 
 use basrelief::texture::linear_from_srgb8;
-use basrelief::{Camera, Error, Horizon, Light, PoseAxes, Region};
+use basrelief::{Horizon, Light, Region};
 use glam::Vec3;
 
 /// Width and height in pixels from `1280x720`.
@@ -117,12 +117,7 @@ pub(crate) type Pose = [[f32; 4]; 4];
 /// A pose: 16 numbers, row by row.
 pub(crate) fn pose(text: &str) -> Result<Pose, String> {
     let pose = <[f32; 16]>::try_from(numbers(text)?).map_err(|_| "is not 16 numbers")?;
-    let pose = [0, 4, 8, 12].map(|i| [pose[i], pose[i + 1], pose[i + 2], pose[i + 3]]);
-    // Both kinds of axes are a rotation if one is.
-    Camera::default().posed(&pose, PoseAxes::OpenCv).map(|_| pose).map_err(|e| match e {
-        Error::Scene { reason, .. } => reason,
-        e => e.to_string(),
-    })
+    check::pose([0, 4, 8, 12].map(|i| [pose[i], pose[i + 1], pose[i + 2], pose[i + 3]]))
 }
 
 /// A direction `X,Y,Z` that is not zero.
@@ -178,7 +173,8 @@ pub(crate) fn sky(text: &str) -> Result<[Vec3; 3], String> {
 
 /// Ranges of values, wherever they come from.
 pub(crate) mod check {
-    use basrelief::{Camera, Intrinsics};
+    use super::Pose;
+    use basrelief::{Camera, Error, Intrinsics, PoseAxes};
     use glam::Vec3;
 
     pub(crate) fn intrinsics(value: [f32; 4]) -> Result<[f32; 4], String> {
@@ -191,6 +187,14 @@ pub(crate) mod check {
                     .into())
             }
         }
+    }
+
+    pub(crate) fn pose(value: Pose) -> Result<Pose, String> {
+        // Both kinds of axes are a rotation if one is.
+        Camera::default().posed(&value, PoseAxes::OpenCv).map(|_| value).map_err(|e| match e {
+            Error::Scene { reason, .. } => reason,
+            e => e.to_string(),
+        })
     }
 
     pub(crate) fn number(value: f32) -> Result<f32, String> {

@@ -14,7 +14,7 @@ right drag, W A S D  move               R            back to the start
 1 to 8              filter             Shift 1 to 8 filter of the right half
 Tab                 split on, off      L            light on, off
 click, I            inspect the pixel  Esc          close; once more: quit
-H                   this help          drop a file  OBJ: load it; image: a map of it";
+H                   this help          drop a file  OBJ or glTF: load it; image: a map of it";
 
 #[derive(Args)]
 pub(crate) struct ViewerOptions {

@@ -202,7 +202,7 @@ impl Viewer {
             Kind::Scene => dropped.to_owned(),
             kind => {
                 let Some(path) = self.path.clone() else {
-                    self.message = Some("an image is a map of an OBJ file: drop one first".into());
+                    self.message = Some("an image is a map of a model: drop one first".into());
                     return None;
                 };
                 let map = match kind {
@@ -321,7 +321,7 @@ fn kind_of(path: &Path) -> Kind {
         path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
     match () {
-        () if name.ends_with(".obj") => Kind::Scene,
+        () if [".obj", ".gltf", ".glb"].iter().any(|end| name.ends_with(end)) => Kind::Scene,
         () if has(&["normal", "nrm"]) => Kind::Normal,
         () if has(&["height", "disp", "depth", "bump"]) => Kind::Height,
         () => Kind::Albedo,

@@ -22,6 +22,46 @@ fn a_pose_is_an_eye_with_its_axes() {
 }
 
 #[test]
+fn a_list_has_a_camera_a_line() {
+    let folder = Folder::new();
+    let pose = "[[1,0,0,0.5],[0,-1,0,0.25],[0,0,-1,3],[0,0,0,1]]";
+    let list = format!(
+        "{{\"eye\": [0.5, 0.25, 3], \"target\": [0.5, 0.25, 0], \"fov\": 90}}\n\
+         {{\"pose\": {pose}, \"intrinsics\": [8, 8, 12, 8]}}\n{{\"fov\": 20}}\n"
+    );
+    folder.put("list.jsonl", &list);
+    folder.succeeds(&format!("{SMALL} --cameras list.jsonl -o l#.png --layer depth=d#.npy"));
+    folder.succeeds(&format!("{SMALL} --fov 20 -o c.png --layer depth=c.npy"));
+    let read = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert!(read("l1.png") == read("l2.png") && read("d1.npy") == read("d2.npy"));
+    assert!(read("l3.png") == read("c.png") && read("d3.npy") == read("c.npy"));
+    folder.put("bad.jsonl", "{}\n{\"eye\": 7}\n");
+    folder.refuses(&format!("{SMALL} --cameras bad.jsonl -o b#.png"), &["bad.jsonl:2: "]);
+    folder.refuses(&format!("{SMALL} --cameras none.jsonl"), &["none.jsonl: no such file"]);
+}
+
+#[test]
+fn scene_files_hold_poses_and_options_take_their_place() {
+    let folder = Folder::new();
+    let view = "--eye 0.5,0.25,3 --target 0.5,0.25,0 --fov 90";
+    folder.succeeds(&format!("{SMALL} {view} -o a.png"));
+    let rows = "[[1, 0, 0, 0.5], [0, -1, 0, 0.25], [0, 0, -1, 3], [0, 0, 0, 1]]";
+    let file = |pose: &str| format!("model = \"quad.obj\"\n[camera]\nfov = 90\n{pose}\n");
+    folder.put("pose.toml", file(&format!("pose = {rows}")));
+    folder.put("eye.toml", file("eye = [9, 9, 9]\ntarget = [0, 0, 0]"));
+    folder.put("both.toml", file(&format!("pose = {rows}\neye = [9, 9, 9]")));
+    let small = "-q --size 24x16 -f nearest";
+    folder.succeeds(&format!("pose.toml {small} -o b.png"));
+    let flat = "1,0,0,0.5,0,-1,0,0.25,0,0,-1,3,0,0,0,1";
+    folder.succeeds(&format!("eye.toml {small} --pose {flat} -o c.png"));
+    folder.succeeds(&format!("pose.toml {small} --eye 0.5,0.25,3 --target 0.5,0.25,0 -o d.png"));
+    folder.refuses(&format!("both.toml {small}"), &["both.toml: a pose takes the place of eye"]);
+    let [a, b, c, d] =
+        ["a.png", "b.png", "c.png", "d.png"].map(|name| fs::read(folder.path(name)).unwrap());
+    assert!(a == b && b == c && c == d);
+}
+
+#[test]
 fn what_is_no_camera_is_refused() {
     let folder = Folder::new();
     for (options, words) in [

@@ -2,8 +2,8 @@
 
 use super::grid::{GROUP, Grid, MOST_LINES, Profile, Row, load};
 use super::pixels::PixelOnLines;
-use crate::light::LocalLights;
 use crate::light::reflection::LEAST_COSINE;
+use crate::light::{LocalLight, LocalLights};
 use crate::simd::{BETWEEN_SCALE, LineLanes, exp_negative, join, line_indices, split, sums};
 use crate::texture::Texel;
 use glam::Vec3;
@@ -134,7 +134,7 @@ impl Totals {
 /// [`LocalLights::diffuse`] of sixteen normals.
 fn diffuse(lights: &LocalLights, normal: &[LineLanes; 3]) -> [LineLanes; 3] {
     let mut sums = lights.ambient.to_array().map(LineLanes::splat);
-    for (to_light, intensity) in &lights.lights {
+    for LocalLight { to_light, intensity, .. } in &lights.lights {
         let Vec3 { x, y, z } = *to_light;
         let cosine = (normal[0] * x + normal[1] * y + normal[2] * z).fast_max(LineLanes::ZERO);
         (0..3).for_each(|i| sums[i] += cosine * intensity[i]);
@@ -153,7 +153,7 @@ fn highlights(lights: &LocalLights, normal: &[LineLanes; 3], alpha_squared: f32)
     let n_v = (along(lights.to_eye) * inverse).fast_max(LineLanes::splat(LEAST_COSINE));
     let masked = |x: LineLanes, y: LineLanes| x * (y * y * (LineLanes::ONE - a) + a).sqrt();
     let mut sums = [LineLanes::ZERO; 3];
-    for (to_light, intensity) in &lights.lights {
+    for LocalLight { to_light, intensity, .. } in &lights.lights {
         let half = (*to_light + lights.to_eye).normalize_or_zero();
         let n_l = (along(*to_light) * inverse).fast_max(LineLanes::ZERO);
         let n_h = along(half) * inverse;

@@ -37,8 +37,9 @@ pub(super) struct Steps {
     offsets: [f32; SLOTS],
     /// Where the runs of texels start among the level's words; half way between rows there are two.
     starts: [[usize; SLOTS]; 2],
-    /// The same among the words of horizons, where texels are lit.
-    horizons: [[usize; SLOTS]; 2],
+    /// The same among the words of horizons, where texels are lit; half way between rows by the one
+    /// before.
+    horizons: [usize; SLOTS],
 }
 
 impl Steps {
@@ -52,7 +53,7 @@ impl Steps {
             scales: [0.0; SLOTS],
             offsets: [0.0; SLOTS],
             starts: [[0; SLOTS]; 2],
-            horizons: [[0; SLOTS]; 2],
+            horizons: [0; SLOTS],
         }
     }
 }
@@ -172,17 +173,16 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
             steps.scales[first..first + 16].copy_from_slice(scale.as_array());
             steps.offsets[first..first + 16].copy_from_slice((x - left).as_array());
             let columns = left.fast_trunc_int();
-            let starts = |rows: &Rows, to: &mut [[usize; SLOTS]; 2]| {
-                for (i, to) in to.iter_mut().enumerate().take(Self::STEPS as usize) {
-                    let numbers =
-                        if HALVES { (numbers + i32x16::splat(i as i32)) >> 1_i32 } else { numbers };
-                    let starts = rows.starts_at(columns, numbers * i32x16::splat(self.sign));
-                    to[first..first + 16].copy_from_slice(&starts);
-                }
+            let starts = |rows: &Rows, i: usize| {
+                let numbers =
+                    if HALVES { (numbers + i32x16::splat(i as i32)) >> 1_i32 } else { numbers };
+                rows.starts_at(columns, numbers * i32x16::splat(self.sign))
             };
-            starts(rows, &mut steps.starts);
+            for i in 0..Self::STEPS as usize {
+                steps.starts[i][first..first + 16].copy_from_slice(&starts(rows, i));
+            }
             if let (true, Some(light)) = (LIT, self.grid.light) {
-                starts(light.rows, &mut steps.horizons);
+                steps.horizons[first..first + 16].copy_from_slice(&starts(light.rows, 0));
             }
         }
     }
@@ -213,34 +213,37 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
     ) -> Texels<CHANNELS> {
         let between = self.between(steps, i);
         let [near, far] = &steps.starts;
-        let at = |half: usize| [steps.starts[half][i], steps.horizons[half][i]];
-        let mut values = self.values(at(0), &between, steps.places[i]);
+        let place = steps.places[i];
+        let (mut values, mut height) = self.values(near[i], &between);
         if HALVES && near[i] != far[i] {
-            let others = self.values::<CHANNELS>(at(1), &between, steps.places[i]);
+            let (others, far_height) = self.values::<CHANNELS>(far[i], &between);
             (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
+            height = (height + far_height) * 0.5;
         }
-        Texels { values, place: steps.places[i] }
+        if let (true, Some(light)) = (LIT, self.grid.light) {
+            let p = place * self.grid.step + self.grid.begin;
+            let at = [self.others + self.xi, p, height];
+            let shown = light.at(steps.horizons[i], &between, at);
+            (0..3).for_each(|c| values[c] *= shown[c]);
+        }
+        Texels { values, place }
     }
 
-    /// The values where lines cross a row: colours in units of 1 / [`BETWEEN_SCALE`].
+    /// The values where lines cross a row, and their heights: colours and heights in units of
+    /// 1 / [`BETWEEN_SCALE`].
     #[inline(always)]
     fn values<const CHANNELS: usize>(
         &self,
-        [start, horizons]: [usize; 2],
+        start: usize,
         between: &Between,
-        place: LineLanes,
-    ) -> [LineLanes; CHANNELS] {
+    ) -> ([LineLanes; CHANNELS], LineLanes) {
         let rows = self.frame.rows;
         let (words, stride) = (rows.words(), rows.stride());
         let mut values = [LineLanes::ZERO; CHANNELS];
         let [red, green] = between.halves_at(words, start);
-        let [blue, _] = between.halves_at(words, start + stride);
+        let [blue, height] = between.halves_at(words, start + stride);
         values[..3].copy_from_slice(&[red, green, blue]);
-        if let (true, Some(light)) = (LIT, self.grid.light) {
-            let p = place * self.grid.step + self.grid.begin;
-            let shown = light.at(horizons, between, [self.others + self.xi, p]);
-            (0..3).for_each(|c| values[c] *= shown[c]);
-        } else if CHANNELS > 3 && rows.has_normals() {
+        if CHANNELS > 3 && rows.has_normals() {
             let [near, far] = between.words_at(words, start + 2 * stride).map(|words| {
                 let [a, b] = halves(words).map(unpack_normals);
                 [0, 1, 2].map(|i| join([a[i], b[i]]))
@@ -249,6 +252,6 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         } else if CHANNELS > 3 {
             values[CHANNELS - 1] = LineLanes::ONE;
         }
-        values
+        (values, height)
     }
 }

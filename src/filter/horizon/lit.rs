@@ -4,6 +4,7 @@
 //! taken for linear in the place, fitted to the patch's pixels; a texel shows the light of the
 //! polygon's point that it is seen over.
 
+use super::near_light::PatchPoint;
 use super::pixels::PixelOnLines;
 use crate::light::{Curved, CurvedSun, LinearSky, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE, Slant};
 use crate::relief::directions::diamond_angle;
@@ -13,8 +14,8 @@ use glam::Vec3;
 
 /// A number that is linear in the line and the seen place.
 #[derive(Clone, Copy, Debug, Default)]
-struct Linear {
-    middle: f32,
+pub(super) struct Linear {
+    pub(super) middle: f32,
     per_line: f32,
     per_row: f32,
 }
@@ -27,6 +28,7 @@ pub(super) struct PatchLight<'a> {
     /// The `xi` and `q` around which numbers are linear.
     middle: [f32; 2],
     suns: Vec<PatchSun>,
+    points: Vec<PatchPoint>,
     sky: Option<PatchSky>,
 }
 
@@ -74,6 +76,9 @@ struct PatchSun {
 
 /// Least part of a height over which a sun rises: two steps of a byte.
 const LEAST_WIDTH: f32 = 1.0 / 128.0;
+
+/// A sun that stands lower than this behind all pixels of a patch lights no place of it.
+const LEAST_DARK: f32 = 1.0 / 16.0;
 
 impl PatchSun {
     fn new(curved: &Curved, sun: usize, picks: &[u8], fit: &Fit) -> Self {
@@ -124,7 +129,7 @@ impl PatchSun {
 }
 
 /// Where a direction along the texture lies among the azimuths.
-fn azimuth(x: f32, y: f32) -> f32 {
+pub(super) fn azimuth(x: f32, y: f32) -> f32 {
     diamond_angle(x, y) * (NUM_AZIMUTHS as f32 * 0.25)
 }
 
@@ -137,20 +142,28 @@ impl<'a> PatchLight<'a> {
         pixels: &[PixelOnLines],
     ) -> Self {
         let fit = Fit::new(pixels);
-        let sun = |sun: usize| PatchSun::new(curved, sun, picks, &fit);
-        let suns = (0..curved.suns.len()).map(sun).collect();
+        let shines = |sun: &usize| {
+            let height = |pick: &u8| {
+                curved.slant(usize::from(pick / 8), *sun).height.as_array()[usize::from(pick % 8)]
+            };
+            picks.iter().any(|pick| height(pick) > -LEAST_DARK)
+        };
+        let suns = (0..curved.suns.len()).filter(shines);
+        let suns = suns.map(|sun| PatchSun::new(curved, sun, picks, &fit)).collect();
         let sky = (!curved.skies.is_empty()).then(|| PatchSky::new(curved, picks, &fit));
-        Self { rows, middle: fit.middle, suns, sky }
+        let point = |point: usize| PatchPoint::new(curved, point, picks, &fit);
+        let points = (0..curved.points.len()).map(point).collect();
+        Self { rows, middle: fit.middle, suns, points, sky }
     }
 
     /// What a white surface shows of the lights where lines cross a row whose words of horizons
-    /// begin at `start`.
+    /// begin at `start`, and have the stored heights `height`.
     #[inline(always)]
     pub(super) fn at(
         &self,
         start: usize,
         between: &Between,
-        [xi, p]: [LineLanes; 2],
+        [xi, p, height]: [LineLanes; 3],
     ) -> [LineLanes; 3] {
         let (words, stride) = (self.rows.words(), self.rows.stride());
         let [xi, p] = [xi - self.middle[0], p - self.middle[1]];
@@ -172,7 +185,7 @@ impl<'a> PatchLight<'a> {
                 }
             }
         }
-        if self.suns.is_empty() {
+        if self.suns.is_empty() && self.points.is_empty() {
             return sums;
         }
         let normal = [0, 1, 2].map(|i| signed(normals, i));
@@ -196,13 +209,17 @@ impl<'a> PatchLight<'a> {
             let lit = n_l * lit.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
             (0..3).for_each(|c| sums[c] += lit * sun.intensity[c]);
         }
+        for point in &self.points {
+            let shown = point.at((self.rows, start, between), normal, [xi, p, height]);
+            (0..3).for_each(|c| sums[c] += shown[c]);
+        }
         sums
     }
 }
 
 impl Linear {
     #[inline(always)]
-    fn at(&self, xi: LineLanes, p: LineLanes) -> LineLanes {
+    pub(super) fn at(&self, xi: LineLanes, p: LineLanes) -> LineLanes {
         xi * self.per_line + p * self.per_row + self.middle
     }
 }
@@ -212,7 +229,7 @@ impl Linear {
 const LEAST_SPREAD: f32 = 0.02;
 
 /// Least squares over the places of pixels.
-struct Fit<'a> {
+pub(super) struct Fit<'a> {
     pixels: &'a [PixelOnLines],
     middle: [f32; 2],
     /// The inverse of the matrix of second moments: xx, xq, qq.
@@ -249,7 +266,7 @@ impl<'a> Fit<'a> {
         Self { pixels, middle, inverse }
     }
 
-    fn linear(&self, values: impl Iterator<Item = f32> + Clone) -> Linear {
+    pub(super) fn linear(&self, values: impl Iterator<Item = f32> + Clone) -> Linear {
         let middle = values.clone().sum::<f32>() / self.pixels.len() as f32;
         let [mut x, mut q] = [0.0_f32; 2];
         for (p, value) in self.pixels.iter().zip(values) {

@@ -26,6 +26,7 @@ mod grid;
 mod kernel;
 mod lines;
 mod lit;
+mod near_light;
 mod patch;
 mod pixels;
 mod plan;

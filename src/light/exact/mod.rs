@@ -20,6 +20,7 @@
 
 mod between;
 mod ceiling;
+mod holes;
 mod occluders;
 mod sequence;
 

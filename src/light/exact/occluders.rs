@@ -4,6 +4,7 @@
 //! left. Any hit will do, so they are asked in the tree's order. Rays are in f64, positions are
 //! stored as they are.
 
+use super::holes;
 use crate::scene::Scene;
 use glam::{DVec3, Vec3};
 
@@ -48,9 +49,15 @@ pub(super) struct Node {
 impl Occluders {
     /// Of all meshes of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let meshes = scene.meshes.iter();
-        let triangles = meshes
-            .flat_map(|mesh| mesh.triangles.iter().map(|t| t.map(|i| mesh.positions[i as usize])));
+        let triangles = scene.meshes.iter().flat_map(|mesh| {
+            let cut_out = scene.materials[mesh.material].cut_out.as_ref();
+            match cut_out.filter(|_| !mesh.tex_coords.is_empty()) {
+                Some(cut_out) => holes::without(mesh, cut_out),
+                None => {
+                    mesh.triangles.iter().map(|t| t.map(|i| mesh.positions[i as usize])).collect()
+                }
+            }
+        });
         let mut occluders = Self { nodes: Vec::new(), triangles: triangles.collect() };
         if !occluders.triangles.is_empty() {
             occluders.split(0, occluders.triangles.len());

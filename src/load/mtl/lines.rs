@@ -30,7 +30,9 @@ fn spelled(keyword: &str) -> Option<&'static str> {
         "pm" => "Pm",
         "pr" => "Pr",
         "ke" => "Ke",
+        "d" => "d",
         "map_kd" => "map_Kd",
+        "map_d" => "map_d",
         "map_pm" => "map_Pm",
         "map_pr" => "map_Pr",
         "map_ke" => "map_Ke",
@@ -78,6 +80,7 @@ fn values(keyword: &str, text: &str) -> std::result::Result<String, String> {
     match keyword {
         "Kd" | "Ks" | "Ke" => color(text).map(|[r, g, b]| format!("{r} {g} {b}")),
         "Ns" | "Pm" | "Pr" => number(text).map(|number| number.to_string()),
+        "d" => number(text.trim_start_matches("-halo").trim()).map(|number| number.to_string()),
         _ => Ok(text.into()),
     }
 }

@@ -48,6 +48,10 @@ pub(super) struct MtlMaterial {
     pub(super) roughness: Option<f32>,
     /// `Ke`.
     pub(super) emissive: Option<[f32; 3]>,
+    /// `d`: 1 is opaque.
+    pub(super) opacity: Option<f32>,
+    /// `map_d`.
+    pub(super) opacity_map: Option<TextureRef>,
     /// `map_Kd`.
     pub(super) albedo: Option<TextureRef>,
     /// `disp`, `map_disp`.
@@ -200,6 +204,8 @@ impl MtlFiles {
             metallic: number("Pm"),
             roughness: number("Pr"),
             emissive: from.emissive,
+            opacity: from.dissolve,
+            opacity_map: texture("map_d", from.dissolve_texture.as_ref())?,
             albedo: texture("map_Kd", from.diffuse_texture.as_ref())?,
             height: texture("disp", unknown("disp"))?,
             bump: texture("map_Bump", from.normal_texture.as_ref())?,

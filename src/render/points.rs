@@ -1,0 +1,174 @@
+//! Points that shine: what meshes hide of them from a block's pixels, and what they add to flat
+//! pieces, whose suns and sky are baked.
+//!
+//! A point lights each place from another direction, so nothing of it is baked. The horizon lights the
+//! texels of a relief with it as on curved meshes, by their horizons; what is flat is lit place by
+//! place. Rays from the relief to the light tell which meshes are in its way.
+
+use super::ground::{Ground, Swept};
+use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
+use super::shadows::{FIRST, Places, RAYS, of_lane, places, ray_offset};
+use crate::filter::{Batch, Filtered};
+use crate::light::exact::{LightRay, Occluders, Receiver};
+use crate::light::{FrameLanes, LocalLights};
+use crate::raster::{LitLanes, QuadBlock};
+use crate::scene::Light;
+use crate::simd::{PixelLanes, set_bits};
+use glam::Vec3;
+use std::ops::Range;
+
+/// The parts of a scene's lights that meshes hide from a block's pixels: light by light and pair by
+/// pair. Nothing for a light that all of them see.
+#[derive(Clone, Debug)]
+pub(super) struct HiddenLights(pub(super) Vec<Vec<PixelLanes>>);
+
+impl HiddenLights {
+    /// Nothing is hidden of so many lights.
+    pub(super) fn none(num: usize) -> Self {
+        Self(vec![Vec::new(); num])
+    }
+
+    /// Takes what is hidden from the lights of the covered pixels of some pairs.
+    pub(super) fn dim(
+        &self,
+        lights: &mut [LocalLights],
+        (block, pairs): (&QuadBlock, Range<usize>),
+    ) {
+        if self.0.iter().all(Vec::is_empty) {
+            return;
+        }
+        let pixels = pairs.flat_map(|i| block.pair(i).covered().map(move |lane| (i, lane)));
+        for (lights, (pair, lane)) in lights.iter_mut().zip(pixels) {
+            for (light, hidden) in lights.lights.iter_mut().zip(&self.0) {
+                let hidden = hidden.get(pair).map_or(0.0, |hidden| hidden.as_array()[lane]);
+                light.intensity *= 1.0 - hidden;
+            }
+        }
+    }
+}
+
+impl Shader<'_> {
+    /// Finds what meshes hide of points from a block's pixels.
+    pub(super) fn hide_points(
+        &self,
+        ground: &Ground,
+        block: &QuadBlock,
+        hidden: &mut HiddenLights,
+    ) {
+        if !self.prepared.has_points() {
+            return;
+        }
+        let occluders = self.prepared.occluders(self.scene);
+        let pixels = block.pairs().map(|pair| {
+            let lit = pair.lit()?;
+            let LitLanes { position, normal, tangent_u, tangent_v } = lit;
+            let eye = self.scene.camera.eye;
+            let frame = FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], eye);
+            let places = places(&pair, ground, &lit, &frame.axes[2]);
+            Some((places, frame.is_back.to_bitmask() as u8))
+        });
+        let Some(pixels) = pixels.collect::<Option<Vec<_>>>() else { return };
+        let relief = pixels.iter().flat_map(|(places, _)| {
+            set_bits(places.covered).map(|lane| of_lane(&places.relief, lane))
+        });
+        // What is curved has no plane below which nothing hides.
+        let normal = ground.baked.map_or(Vec3::ZERO, |lit| lit.normal);
+        let Some((first, _)) = pixels.first() else { return };
+        let Some(receiver) = Receiver::new(relief, normal, of_lane(&first.polygon, 0)) else {
+            return;
+        };
+        for (light, hidden) in self.scene.lights.iter().zip(&mut hidden.0) {
+            let Light::Point { position, .. } = *light else { continue };
+            if occluders.may_hide(&receiver, position) {
+                let of = |(places, is_back): &(Places, u8)| {
+                    PixelLanes::new(std::array::from_fn(|lane| {
+                        let is_covered = places.covered >> lane & 1 == 1;
+                        let is_turned = is_back >> lane & 1 == 1;
+                        let hidden = || hidden_part(occluders, position, places, (lane, is_turned));
+                        if is_covered { hidden() } else { 0.0 }
+                    }))
+                };
+                *hidden = pixels.iter().map(of).collect();
+            }
+        }
+    }
+
+    /// Adds what points show of a flat piece.
+    pub(super) fn shine(
+        &self,
+        ground: &Ground,
+        hidden: &HiddenLights,
+        block: &QuadBlock,
+        scratch: &mut ShadeScratch,
+        colors: &mut [[PixelLanes; 3]],
+    ) {
+        let points = self.scene.lights.iter().take(64).enumerate();
+        let points = points.filter(|(_, light)| matches!(light, Light::Point { .. }));
+        let lights = points.fold(0_u64, |lights, (i, _)| lights | 1 << i);
+        let unlit = Ground { prepared: ground.diffuse, baked: None, ..*ground };
+        let mut shown = Vec::with_capacity(colors.len());
+        let has_relief = unlit.prepared.field().is_some() && unlit.prepared.surface().has_normals();
+        // More lights than bits are lit place by place.
+        if has_relief && self.scene.lights.len() <= 64 {
+            let points = Swept { lights, has_sky: false };
+            self.swept(&unlit, (points, hidden), block, scratch, &mut shown);
+        } else {
+            for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
+                let pairs = first..block.num_pairs().min(first + PAIRS_AT_ONCE);
+                self.place_by_place(&unlit, hidden, (block, pairs), scratch, &mut shown);
+            }
+        }
+        for (color, shown) in colors.iter_mut().zip(&shown) {
+            (0..3).for_each(|c| color[c] += shown[c]);
+        }
+    }
+
+    /// Appends what pairs show of points where there is no relief.
+    fn place_by_place(
+        &self,
+        ground: &Ground,
+        hidden: &HiddenLights,
+        (block, pairs): (&QuadBlock, Range<usize>),
+        scratch: &mut ShadeScratch,
+        colors: &mut Vec<[PixelLanes; 3]>,
+    ) {
+        let ShadeScratch { filter, footprints, lights, filtered } = scratch;
+        self.footprints((ground.prepared, &self.traits.rule), (block, pairs.clone()), footprints);
+        lights.clear();
+        self.list_lights((block, pairs.clone()), lights);
+        hidden.dim(lights, (block, pairs.clone()));
+        for lights in lights.iter_mut() {
+            lights.occlude(0.0);
+            lights.lights.retain(|light| light.is_point);
+        }
+        filtered.resize(pairs.len(), Filtered::default());
+        let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
+        self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
+        colors.extend(filtered.iter().map(|filtered| ground.tinted(&filtered.color)));
+    }
+}
+
+/// The part of a pixel from which meshes hide a point.
+fn hidden_part(
+    occluders: &Occluders,
+    light: Vec3,
+    places: &Places,
+    (lane, is_turned): (usize, bool),
+) -> f32 {
+    let steps = places.steps.each_ref().map(|step| of_lane(step, lane));
+    let reach = f64::from(places.reach.as_array()[lane]);
+    let is_hidden = |ray: usize| {
+        let [x, y] = ray_offset(ray);
+        let from = (of_lane(&places.relief, lane) + steps[0] * x + steps[1] * y).as_dvec3();
+        let way = light.as_dvec3() - from;
+        let distance = way.length();
+        let Some(direction) = way.try_normalize() else { return false };
+        occluders.hide(&LightRay { from, direction, distance, reach, is_turned })
+    };
+    let num = FIRST.into_iter().filter(|ray| is_hidden(*ray)).count();
+    if num == 0 || num == FIRST.len() {
+        return num as f32 / FIRST.len() as f32;
+    }
+    let others = (0..RAYS).filter(|ray| !FIRST.contains(ray));
+    (num + others.filter(|ray| is_hidden(*ray)).count()) as f32 / RAYS as f32
+}

@@ -1,0 +1,216 @@
+//! Relief with an outline and a depth, against the same relief as real geometry.
+
+mod common;
+#[path = "common/displaced.rs"]
+mod displaced;
+
+use basrelief::invariants::outlines_hold;
+use basrelief::relief::{HeightField, ReliefPlace, march};
+use basrelief::shell::{Met, Shell, ViewRay};
+use basrelief::simd::PixelLanes;
+use basrelief::texture::{Surface, SurfaceMaps, Wrap};
+use basrelief::{Filter, Frame, Layer, Material, Mesh, Rays, Renderer, Scene, Settings};
+use common::{Random, cobbles, floor_scene, rough_surface};
+use displaced::{
+    ball_in_stones, decibels, depths_within, displaced, overlap, scene, show, sphere, torus,
+};
+use glam::{DVec3, Vec3};
+
+/// As small as a picture may be and a stone still have some pixels.
+fn settings(filter: Filter) -> Settings {
+    Settings { width: 96, height: 64, filter, ..Settings::default() }
+}
+
+/// Few stones, so that they are large in small pictures.
+fn stones() -> SurfaceMaps {
+    cobbles(48, 2)
+}
+
+fn draw(scene: &Scene, settings: Settings) -> Frame {
+    Renderer::new(scene.clone(), settings).expect("a valid scene").render()
+}
+
+fn depths(scene: &Scene) -> Vec<f32> {
+    let mut renderer = Renderer::new(scene.clone(), settings(Filter::Nearest)).expect("valid");
+    renderer.render_layers(&[Layer::Depth]).floats(Layer::Depth).to_vec()
+}
+
+#[test]
+fn curved_reliefs_look_as_displaced_triangles_do() {
+    // Overlap at least, and decibels of the horizon and of the truth. The goals at 640x360 are 0.993
+    // and 40 dB for the horizon, and there are reached; here a stone of the torus has few pixels.
+    for (name, mesh, distance, [least_overlap, horizon, truth]) in [
+        ("torus", torus([48, 24]), 3.4, [0.998, 29.0, 54.0]),
+        ("sphere", sphere([48, 24]), 2.6, [0.998, 43.0, 57.0]),
+    ] {
+        let scene = scene(mesh, stones(), distance);
+        let shown = show(&displaced(&scene, 16), &settings(Filter::Nearest));
+        for (filter, least) in
+            [(Filter::default(), horizon), (Filter::Truth(Rays { samples: 64 }), truth)]
+        {
+            let frame = draw(&scene, settings(filter));
+            let found = [overlap(&frame, &shown.coverage), decibels(&frame, &shown.colors)];
+            println!("{name}: overlap {:.4}, {:.2} dB", found[0], found[1]);
+            assert!(found[0] > least_overlap && found[1] > least, "{name}, {filter:?}: {found:?}");
+        }
+        let [u, v] = scene.meshes[0].tangents[600];
+        let most = u.cross(v).length().sqrt() * 0.06 * 0.01;
+        let near = depths_within(&depths(&scene), &shown.depth, most);
+        println!("{name}: depth {near:.4}");
+        assert!(near > 0.99, "{name}: depths of {near}");
+        let polygons = draw(&scene, Settings { silhouette: false, ..settings(Filter::Nearest) });
+        assert!(overlap(&polygons, &shown.coverage) < 0.985, "{name} has an outline to speak of");
+    }
+}
+
+/// The part of the pixels with a neighbour of another name for which such a pixel of the other picture
+/// is no farther than one pixel.
+fn lines_within_a_pixel(a: &[u32], b: &[u32], width: usize) -> f64 {
+    let border = |names: &[u32], at: usize| {
+        [at + 1, at + width].iter().any(|other| names.get(*other).is_some_and(|n| *n != names[at]))
+    };
+    let around = |at: usize| {
+        let offsets = [-1_isize, 0, 1].map(|y| [-1, 0, 1].map(|x| y * width as isize + x));
+        offsets.into_iter().flatten().filter_map(move |offset| at.checked_add_signed(offset))
+    };
+    let inner = |at: &usize| !at.is_multiple_of(width) && at % width < width - 1;
+    let line: Vec<usize> = (0..a.len()).filter(inner).filter(|at| border(a, *at)).collect();
+    let near =
+        line.iter().filter(|at| around(**at).any(|other| other < b.len() && border(b, other)));
+    near.count() as f64 / line.len() as f64
+}
+
+#[test]
+fn a_ball_sinks_between_the_stones() {
+    let scene = ball_in_stones(cobbles(64, 2));
+    // The floor is large, so only its middle is cut finely enough: one more floor of that.
+    let mut fine = scene.clone();
+    fine.meshes[0] = {
+        let grid = displaced::grid([20, 20], |x, y| {
+            let at = Vec3::new(x - 0.5, 0.0, 0.5 - y) * 6.0;
+            (at, Vec3::Y, glam::Vec2::new(at.x, -at.z) * 0.5)
+        });
+        Mesh { material: 0, ..grid }
+    };
+    let names = |scene: &Scene, silhouette: bool, parallax: bool| {
+        let settings =
+            Settings { width: 160, height: 100, silhouette, parallax, ..Settings::default() };
+        let mut renderer = Renderer::new(scene.clone(), settings).expect("a valid scene");
+        renderer.render_layers(&[Layer::Object]).ids(Layer::Object).to_vec()
+    };
+    let geometry = names(&displaced(&fine, 20), true, false);
+    let cut = names(&scene, true, true);
+    let near =
+        lines_within_a_pixel(&cut, &geometry, 160).min(lines_within_a_pixel(&geometry, &cut, 160));
+    let by_polygons = lines_within_a_pixel(&geometry, &names(&scene, false, true), 160);
+    println!("within a pixel: {near:.3}, by polygons {by_polygons:.3}");
+    assert!(near >= 0.95, "{near} of the line where they meet");
+    assert!(by_polygons < 0.9, "{by_polygons} of the line by polygons: no ball to speak of");
+}
+
+#[test]
+fn a_flat_mesh_alone_is_drawn_as_without_outlines() {
+    let scene = floor_scene(rough_surface(32, 16, Wrap::Repeat, 3), 0.5);
+    for filter in Filter::ALL {
+        let filter =
+            if let Filter::Truth(_) = filter { Filter::Truth(Rays { samples: 8 }) } else { filter };
+        let [with, without] = [true, false].map(|silhouette| {
+            let settings = Settings { width: 48, height: 32, ..settings(filter) };
+            draw(&scene, Settings { silhouette, ..settings })
+        });
+        assert!(with.pixels == without.pixels, "{filter:?}");
+    }
+}
+
+#[test]
+fn tiles_and_threads_show_nowhere() {
+    let mut scene = scene(torus([24, 12]), stones(), 3.4);
+    // Another ring through the first: rays pass the one and meet the other.
+    let mut other = torus([24, 12]);
+    for position in &mut other.positions {
+        *position = Vec3::new(position.x + 1.0, -position.z, position.y);
+    }
+    for normal in &mut other.normals {
+        *normal = Vec3::new(normal.x, -normal.z, normal.y);
+    }
+    scene.meshes.push(Mesh::new(other.positions, other.tex_coords, other.normals, other.triangles));
+    let filters = [(Filter::default(), 1), (Filter::Nearest, 4), (Filter::Nearest, 8)];
+    for (filter, msaa) in filters {
+        for cull_back_faces in [false, true] {
+            let settings = Settings { msaa, cull_back_faces, ..settings(filter) };
+            outlines_hold(scene.clone(), settings).unwrap_or_else(|what| panic!("{what}"));
+        }
+    }
+    let of = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| draw(&scene, settings(Filter::default())))
+    };
+    assert!(of(1) == of(5));
+}
+
+#[test]
+fn straight_pieces_hit_what_the_march_hits() {
+    let mut random = Random(5);
+    for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
+        for size in [[16, 16], [20, 12], [1, 7]] {
+            let field = HeightField::new(&rough_surface(size[0], size[1], wrap, 7));
+            for _ in 0..300 {
+                let mut pair = |most: f32| [(); 2].map(|()| random.within(-most, most));
+                let (base, along) = (pair(3.0), pair(1.0));
+                let lanes = |pair: [f32; 2]| pair.map(PixelLanes::splat);
+                let expected = march(&field, &lanes(base), &lanes(along)).as_array()[0];
+                let at = |depth: f64| ReliefPlace {
+                    uv: [0, 1].map(|i| f64::from(base[i]) + f64::from(along[i]) * depth),
+                    depth,
+                };
+                // In two pieces, as prisms cut rays.
+                let first = field.first_hit(&at(0.0), &at(0.3)).map(|part| part * 0.3);
+                let second = || field.first_hit(&at(0.3), &at(1.0)).map(|part| 0.3 + part * 0.7);
+                let found = first.or_else(second).unwrap_or(1.0);
+                assert!(
+                    (found - f64::from(expected)).abs() < 2e-4,
+                    "{wrap:?} {size:?}: {found}, not {expected} from {base:?} along {along:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn rays_rise_from_a_ball_without_relief_to_meet() {
+    // Heights are 0 all over: what is not deep enough comes out again.
+    let mesh = sphere([64, 32]);
+    let maps = SurfaceMaps { relief_depth: 0.1, ..cobbles(16, 2) };
+    let field = HeightField::new(&Surface::new(maps).expect("valid maps"));
+    let shell = Shell::new(&mesh, 0.1);
+    assert!(shell.is_curved());
+    let eye = DVec3::new(0.0, 0.0, 4.0);
+    let (mut num_hits, mut num_passed) = (0, 0);
+    for (i, triangle) in mesh.triangles.iter().enumerate() {
+        let middle = triangle.iter().fold(Vec3::ZERO, |sum, v| sum + mesh.positions[*v as usize]);
+        let middle = (middle / 3.0).as_dvec3();
+        let normal = middle.normalize_or_zero();
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+        let has_area = a != b && b != c && c != a;
+        if !has_area || normal.dot(eye - middle) <= 1e-3 {
+            continue;
+        }
+        let ray = ViewRay { eye, direction: middle - eye };
+        match shell.follow(&mesh, &field, i as u32, &ray) {
+            Met::Relief(hit) => {
+                num_hits += 1;
+                assert!(hit.distance >= 1.0 - 1e-6 && (0.0..=1.0).contains(&hit.place.depth));
+                let place = eye + ray.direction * hit.distance;
+                // From the middle, relief is no higher than the ball and no deeper than it may be.
+                assert!((0.85..1.001).contains(&place.length()), "{place}");
+            }
+            Met::Nothing(distance) => {
+                num_passed += 1;
+                assert!(distance >= 1.0 - 1e-6, "out of it before its polygon");
+                assert!(shell.may_be_passed(&mesh, i as u32, eye.as_vec3()), "triangle {i}");
+            }
+            Met::Polygon => panic!("it has relief"),
+        }
+    }
+    assert!(num_hits > 500 && num_passed > 10, "{num_hits} hits, {num_passed} passed");
+}

@@ -1,0 +1,90 @@
+//! Points that shine: the relief's shadow and that of meshes, against the truth.
+
+mod common;
+
+use basrelief::texture::{Surface, SurfaceMaps, srgb_from_linear};
+use basrelief::{
+    Filter, Frame, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky, render,
+};
+use common::{cobbles, floor_scene};
+use glam::Vec3;
+
+const TRUTH: Filter = Filter::Truth(Rays { samples: 32 });
+
+fn draw(scene: &Scene, filter: Filter) -> Frame {
+    let settings = Settings {
+        width: 72,
+        height: 48,
+        msaa: 1,
+        filter,
+        lighting: Lighting::Lit,
+        ..Settings::default()
+    };
+    render(scene.clone(), settings).expect("a valid scene")
+}
+
+/// A floor under a point alone.
+fn floor(maps: SurfaceMaps, position: Vec3) -> Scene {
+    let mut scene = floor_scene(Surface::new(maps).expect("valid maps"), 0.5);
+    let intensity = Vec3::splat(position.y * position.y * 4.0 + 2.0);
+    scene.lights = vec![Light::Point { position, intensity }];
+    scene.sky = Sky::Color(Vec3::splat(0.02));
+    scene.background = [0.0; 4];
+    scene
+}
+
+fn decibels(a: &Frame, b: &Frame) -> f32 {
+    let both = a.pixels.iter().zip(&b.pixels).filter(|(a, b)| a[3] == 1.0 && b[3] == 1.0);
+    let squares = both.flat_map(|(a, b)| {
+        [0, 1, 2].map(|c| (srgb_from_linear(a[c]) - srgb_from_linear(b[c])).powi(2))
+    });
+    let (sum, num) = squares.fold((0.0, 0.0), |(sum, num), square| (sum + square, num + 1.0));
+    assert!(num > 1500.0, "a part of the picture");
+    -10.0 * (sum / num as f32).max(1e-12).log10()
+}
+
+#[test]
+fn relief_hides_points_as_in_the_truth() {
+    for (height, least) in [(0.3, 33.0), (1.0, 35.0), (5.0, 35.0)] {
+        let scene = floor(cobbles(128, 4), Vec3::new(0.3, height, 2.5));
+        let found = decibels(&draw(&scene, Filter::default()), &draw(&scene, TRUTH));
+        assert!(found > least, "{found} dB at a height of {height}");
+    }
+}
+
+#[test]
+fn meshes_hide_points_from_flat_pieces() {
+    let flat = SurfaceMaps { height: None, ..cobbles(128, 4) };
+    // All of the error is at the edges, which go from white to black within a pixel.
+    for (maps, least) in [(cobbles(128, 4), 23.0), (flat, 25.0)] {
+        let mut scene = floor(maps, Vec3::new(0.3, 2.0, 1.5));
+        let corners = [[-1.0, 2.5], [1.0, 2.5], [1.0, 1.0], [-1.0, 1.0]];
+        let board = corners.map(|[x, z]| Vec3::new(x, 1.0, z)).to_vec();
+        let mut mesh = Mesh::new(board, vec![], vec![], vec![[0, 1, 2], [0, 2, 3]]);
+        mesh.material = 1;
+        let open = draw(&scene, Filter::default());
+        scene.meshes.push(mesh);
+        scene.materials.push(Material { base_color: Vec3::ZERO, ..Material::default() });
+        let drawn = draw(&scene, Filter::default());
+        let found = decibels(&drawn, &draw(&scene, TRUTH));
+        assert!(found > least, "{found} dB");
+        assert!(decibels(&drawn, &open) < 15.0, "there is a shadow");
+    }
+}
+
+#[test]
+fn without_relief_it_is_lambert_in_closed_form() {
+    let white = SurfaceMaps::default();
+    let mut scene = floor(white, Vec3::new(0.0, 1.0, 2.0));
+    scene.sky = Sky::default();
+    let [drawn, truth] = [Filter::default(), TRUTH].map(|filter| draw(&scene, filter));
+    assert!(decibels(&drawn, &truth) > 50.0, "{} dB", decibels(&drawn, &truth));
+}
+
+#[test]
+fn suns_keep_their_shadows_beside_points() {
+    let mut scene = floor(cobbles(128, 4), Vec3::new(0.3, 1.0, 2.5));
+    scene.lights.insert(0, Light::sun(Vec3::new(-0.45, 0.577, -0.9), Vec3::ONE));
+    let found = decibels(&draw(&scene, Filter::default()), &draw(&scene, TRUTH));
+    assert!(found > 35.0, "{found} dB");
+}
