@@ -1,14 +1,14 @@
 //! Many small frames with their layers, as data sets ask for them: a thousand cameras around a
 //! scene, all in memory that is kept. Prints what a frame took.
 //!
-//! `cargo run --release --example many_frames -- [FILE.obj] [number of frames]`
+//! `cargo run --release --example many_frames -- [number of frames] [FILE.obj] [TEXTURE]`
 
 use basrelief::layers::ValuesMut;
-use basrelief::load::{LoadOptions, load};
+use basrelief::load::{LoadOptions, MaterialOptions, load};
 use basrelief::{Camera, Filter, Layer, Renderer, Settings, scene};
 use glam::Quat;
 use std::f32::consts::TAU;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Pixels a side.
@@ -16,11 +16,13 @@ const SIDE: u32 = 256;
 
 fn main() -> basrelief::Result<()> {
     let mut args = std::env::args_os().skip(1);
-    let scene = match args.next() {
-        Some(file) => load(Path::new(&file), &LoadOptions::default())?.scene,
+    let num = args.next().and_then(|num| num.to_str()?.parse::<u32>().ok()).unwrap_or(1000).max(1);
+    let (file, albedo) = (args.next(), args.next().map(PathBuf::from));
+    let all = MaterialOptions { albedo, ..MaterialOptions::default() };
+    let scene = match file {
+        Some(file) => load(Path::new(&file), &LoadOptions { all, ..LoadOptions::default() })?.scene,
         None => scene::builtin(),
     };
-    let num = args.next().and_then(|num| num.to_str()?.parse::<u32>().ok()).unwrap_or(1000);
     let filter = Filter::Trilinear(Default::default());
     let settings = Settings { width: SIDE, height: SIDE, filter, msaa: 1, ..Settings::default() };
     let mut renderer = Renderer::new(scene, settings)?;
@@ -43,8 +45,8 @@ fn main() -> basrelief::Result<()> {
         ]);
         num_seen += objects.iter().filter(|object| **object != u32::MAX).count();
     }
-    let ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(num.max(1));
-    let share = num_seen as f64 / (num_pixels as f64 * f64::from(num.max(1)));
+    let ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(num);
+    let share = num_seen as f64 / (num_pixels as f64 * f64::from(num));
     println!("{num} frames of {SIDE}x{SIDE} pixels, {ms:.3} ms each; {:.0} % seen", share * 100.0);
     Ok(())
 }

@@ -57,7 +57,6 @@ impl Camera {
     ///     0 for calibrations such as OpenCV's.
     #[staticmethod]
     #[pyo3(signature = (fx, fy, cx, cy, pose, convention = "opencv", *, first_pixel = 0.5, near = 0.01))]
-    #[allow(clippy::too_many_arguments, reason = "they are the matrix that programs have")]
     fn from_intrinsics(
         fx: f32,
         fy: f32,

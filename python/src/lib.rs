@@ -14,6 +14,8 @@
 //!
 //! Nothing here decides what a picture looks like: that is the library's.
 #![forbid(unsafe_code)]
+#![allow(clippy::doc_markdown, reason = "docs of classes and methods are Python's docstrings")]
+#![allow(clippy::too_many_arguments, reason = "Python's functions have keywords")]
 
 mod arguments;
 mod camera;

@@ -24,7 +24,7 @@ use std::sync::Arc;
 ///     emissive.
 /// materials: a dict from names of materials to dicts of such options.
 /// Other options: aspect (width over height that the camera frames for, 1.0), crease_angle
-///     (degrees, 60), allow_outside (images outside the file's folder, False), max_image_side,
+///     (degrees), allow_outside (images outside the file's folder, False), max_image_side,
 ///     max_image_mib, max_triangles, max_textures.
 ///
 /// Raises FileNotFoundError where there is no such file, ValueError with file and line where one
@@ -76,7 +76,7 @@ fn extract<'py, T: for<'a> FromPyObject<'a, 'py>>(
 fn of_file(options: &mut LoadOptions, name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
     match name {
         "aspect" => options.aspect = extract(value, name)?,
-        "crease_angle" => options.crease_angle = extract(value, name)?,
+        "crease_angle" => options.crease_angle = Some(extract(value, name)?),
         "allow_outside" => options.allow_outside = extract(value, name)?,
         "max_image_side" => options.max_image_side = extract(value, name)?,
         "max_image_mib" => options.max_image_mib = extract(value, name)?,

@@ -37,7 +37,6 @@ impl Material {
         roughness = 1.0, emissive = None, albedo = None, height = None, relief_depth = 0.05,
         normal = None, normal_y = "up", metallic_map = None, roughness_map = None,
         occlusion_map = None, emissive_map = None, wrap = "repeat"))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of one class")]
     fn new(
         py: Python<'_>,
         name: &str,
@@ -90,6 +89,7 @@ impl Material {
             emissive: rgb(emissive, "emissive", Vec3::ZERO)?,
             maps,
             surface,
+            ..basrelief::Material::default()
         }))
     }
 

@@ -1,12 +1,13 @@
 //! Triangles of one material.
 
-use crate::arguments::{places, points, refused, triangles};
+use crate::arguments::{mistyped, places, points, refused, triangles};
 use crate::material::Material;
 use pyo3::prelude::*;
 
 /// Triangles of one material.
 ///
-/// Mesh(vertices, faces, uv=None, normals=None, material=None, name="")
+/// Mesh(vertices, faces, uv=None, normals=None, material=None, name="",
+///     colors=None)
 ///
 /// vertices: (N, 3) numbers, world units.
 /// faces: (M, 3) whole numbers, indices of vertices, counter-clockwise seen from the front.
@@ -14,6 +15,7 @@ use pyo3::prelude::*;
 ///     is drawn.
 /// normals: (N, 3), unit vectors; made from the faces where there are none.
 /// material: a Material; without one it is white.
+/// colors: (N, 3), linear, 0 to 1e6: what multiplies the material's colour at each vertex.
 #[pyclass(frozen, module = "basrelief")]
 #[derive(Debug)]
 pub(crate) struct Mesh {
@@ -24,22 +26,29 @@ pub(crate) struct Mesh {
 #[pymethods]
 impl Mesh {
     #[new]
-    #[pyo3(signature = (vertices, faces, uv = None, normals = None, material = None, name = ""))]
+    #[pyo3(signature = (vertices, faces, uv = None, normals = None, material = None, name = "",
+        colors = None))]
     fn new(
         py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
         uv: Option<&Bound<'_, PyAny>>,
         normals: Option<&Bound<'_, PyAny>>,
-        material: Option<Py<Material>>,
+        material: Option<&Bound<'_, PyAny>>,
         name: &str,
+        colors: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let material = material.map(|arg| arg.cast::<Material>().map(|m| m.clone().unbind()));
+        let material =
+            material.transpose().map_err(|_| mistyped("material", "must be a Material"))?;
         let positions = points(vertices, "vertices")?;
         let num = positions.len();
         let triangles = triangles(faces, "faces", num)?;
         let tex_coords = uv.map_or(Ok(Vec::new()), |uv| places(uv, "uv"))?;
         let normals = normals.map_or(Ok(Vec::new()), |normals| points(normals, "normals"))?;
-        for (name, len) in [("uv", tex_coords.len()), ("normals", normals.len())] {
+        let colors = colors.map_or(Ok(Vec::new()), |colors| points(colors, "colors"))?;
+        let given = [tex_coords.len(), normals.len(), colors.len()];
+        for (name, len) in ["uv", "normals", "colors"].into_iter().zip(given) {
             if ![0, num].contains(&len) {
                 return Err(refused(name, format!("has {len} rows for {num} vertices")));
             }
@@ -47,6 +56,7 @@ impl Mesh {
         let mut mesh =
             py.detach(|| basrelief::Mesh::new(positions, tex_coords, normals, triangles));
         mesh.name = name.into();
+        mesh.colors = colors;
         Ok(Self { mesh, material })
     }
 

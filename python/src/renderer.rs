@@ -63,7 +63,6 @@ impl Renderer {
     #[pyo3(signature = (scene, *, filter = None, lighting = None, exposure = 0.0, tone = "none",
         msaa = 4, parallax = true, silhouette = true, cull = false, tile_size = 32,
         threads = None))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of one class")]
     fn new(
         py: Python<'_>,
         scene: &Bound<'_, Scene>,
@@ -207,9 +206,11 @@ impl Renderer {
             }
         }
         let (tex_coords, triangles) = (old.tex_coords.clone(), old.triangles.clone());
+        let colors = old.colors.clone();
         let new = Mesh {
             name: old.name.clone(),
             material: old.material,
+            colors,
             ..Mesh::new(positions, tex_coords, normals, triangles)
         };
         self.exchange(py, state, &mut vec![(index, new)])?;

@@ -63,11 +63,13 @@ impl Scene {
         scene.lights = lights.unwrap_or_default().iter().map(light).collect::<PyResult<_>>()?;
         scene.sky = sky.map_or(Ok(basrelief::Sky::default()), any_sky)?;
         scene.background = background.map_or(Ok([0.0; 4]), background_of)?;
-        scene.camera = match camera {
-            Some(camera) => camera.0,
-            None => framing(&scene, 1.0)?,
-        };
+        scene.camera = camera.map_or(scene.camera, |camera| camera.0);
+        // What is framed is finite.
         scene.validate().map_err(exception)?;
+        if camera.is_none() {
+            scene.camera = framing(&scene, 1.0)?;
+            scene.validate().map_err(exception)?;
+        }
         Ok(Self { scene: Arc::new(scene), remarks: Default::default() })
     }
 

@@ -55,7 +55,6 @@ impl Surface {
     ///
     /// Returns (..., 3) of float32: linear red, green and blue, unlit.
     #[pyo3(signature = (uv, dx, dy, view = None, *, filter = None, threads = None))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of one function")]
     fn colors<'py>(
         &self,
         py: Python<'py>,

@@ -124,6 +124,7 @@ class Mesh:
         normals: ArrayLike | None = None,
         material: Material | None = None,
         name: str = "",
+        colors: ArrayLike | None = None,
     ) -> None: ...
     @property
     def name(self) -> str: ...
@@ -182,7 +183,7 @@ def load(
     roughness: float = ...,
     emissive: _Color = ...,
     aspect: float = 1.0,
-    crease_angle: float = 60.0,
+    crease_angle: float = ...,
     allow_outside: bool = False,
     max_image_side: int = 32768,
     max_image_mib: int = 1024,
