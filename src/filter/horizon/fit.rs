@@ -27,13 +27,13 @@ const LEAST_SPREAD: f32 = 0.02;
 /// Least squares over the places of pixels.
 pub(super) struct Fit<'a> {
     pixels: &'a [PixelOnLines],
-    middle: [f32; 2],
+    pub(super) middle: [f32; 2],
     /// The inverse of the matrix of second moments: xx, xq, qq.
     inverse: [f32; 3],
 }
 
 impl<'a> Fit<'a> {
-    fn new(pixels: &'a [PixelOnLines]) -> Self {
+    pub(super) fn new(pixels: &'a [PixelOnLines]) -> Self {
         let num = 1.0 / pixels.len() as f32;
         let middle = pixels.iter().fold([0.0; 2], |sum, p| [sum[0] + p.xi, sum[1] + p.q]);
         let middle = middle.map(|sum: f32| sum * num);
