@@ -58,7 +58,10 @@ fn holes_show_what_lies_behind_and_layers_say_so() {
 #[test]
 fn foliage_stays_as_dense_as_it_is_however_far() {
     // Thin blades: a fifth of the texture.
-    let blades = |x: u32, y: u32| if x % 5 == 0 { 0.6 + 0.4 * (y % 3) as f32 / 2.0 } else { 0.1 };
+    let blades = |x: u32, y: u32| match x % 5 {
+        0 => 0.6 + 0.4 * (y % 3) as f32 / 2.0,
+        _ => 0.1,
+    };
     let share = |eye: f32, repeats: f32| {
         let axes = [Vec3::X, Vec3::Y].map(|axis| axis * eye);
         let meshes = vec![square(0, Vec3::ZERO, axes, repeats)];
