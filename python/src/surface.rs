@@ -5,7 +5,7 @@ use crate::material::surface_maps;
 use crate::{images, pools, settings};
 use basrelief::filter::{Footprint, Prepared};
 use basrelief::texture;
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
@@ -66,45 +66,89 @@ impl Surface {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
         let filter = settings::filter(filter)?;
-        let [uv, dx, dy] =
-            [floats_of(uv, "uv", 2)?, floats_of(dx, "dx", 2)?, floats_of(dy, "dy", 2)?];
+        let given = Given::new([uv, dx, dy], view)?;
+        let (pixels, prepared) = (given.pixels()?, &self.0);
+        let filtered = |first: usize| {
+            let end = (first + AT_ONCE).min(pixels.places.len());
+            let footprints: Vec<_> = (first..end).map(|i| pixels.footprint(prepared, i)).collect();
+            prepared.colors(&filter, &footprints)
+        };
+        let pool = pools::pool(pools::threads(threads)?)?;
+        let firsts: Vec<usize> = (0..pixels.places.len()).step_by(AT_ONCE).collect();
+        let colors = py.detach(|| {
+            pool.install(|| firsts.into_par_iter().flat_map_iter(filtered).collect::<Vec<_>>())
+        });
+        let mut shape = given.shape().to_vec();
+        shape.push(3);
+        PyArray1::from_vec(py, colors.into_flattened()).reshape(shape)
+    }
+}
+
+/// What a caller says of pixels, checked.
+struct Given<'py> {
+    /// Places and derivatives.
+    places: [Floats<'py>; 3],
+    view: Option<Floats<'py>>,
+}
+
+type Floats<'py> = PyReadonlyArrayDyn<'py, f32>;
+
+/// The same, without the interpreter.
+struct Pixels<'a> {
+    places: &'a [[f32; 2]],
+    derivatives: [&'a [[f32; 2]]; 2],
+    views: Option<&'a [[f32; 3]]>,
+}
+
+impl<'py> Given<'py> {
+    fn new(
+        [uv, dx, dy]: [&Bound<'py, PyAny>; 3],
+        view: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Self> {
+        let places = [floats_of(uv, "uv", 2)?, floats_of(dx, "dx", 2)?, floats_of(dy, "dy", 2)?];
         let view = view.map(|view| floats_of(view, "view", 3)).transpose()?;
-        let shape = &uv.shape()[..uv.ndim() - 1];
-        for (name, array) in [("dx", Some(&dx)), ("dy", Some(&dy)), ("view", view.as_ref())] {
+        let given = Self { places, view };
+        let shape = given.shape();
+        let [_, dx, dy] = &given.places;
+        for (name, array) in [("dx", Some(dx)), ("dy", Some(dy)), ("view", given.view.as_ref())] {
             let own = array.map_or(shape, |array| &array.shape()[..array.ndim() - 1]);
             if own != shape {
                 return Err(refused(name, format!("is of {own:?} pixels, and uv of {shape:?}")));
             }
         }
-        let (places, dxs, dys) = (numbers(&uv)?, numbers(&dx)?, numbers(&dy)?);
-        for (name, numbers) in [("uv", places), ("dx", dxs), ("dy", dys)] {
-            if !numbers.iter().all(|c| c.abs() <= MOST) {
+        for (name, array) in ["uv", "dx", "dy"].into_iter().zip(&given.places) {
+            if !numbers(array)?.iter().all(|c| c.abs() <= MOST) {
                 return Err(refused(name, "must be finite and within 1e6 repeats"));
             }
         }
-        let views = view.as_ref().map(numbers).transpose()?;
         let is_view = |v: &[f32; 3]| v.iter().all(|c| c.abs() <= 1e18) && *v != [0.0; 3];
-        let views = views.map(|views| views.as_chunks::<3>().0);
-        if !views.is_none_or(|views| views.iter().all(is_view)) {
+        if !given.pixels()?.views.is_none_or(|views| views.iter().all(is_view)) {
             return Err(refused("view", "must be finite, within 1e18, and no direction 0"));
         }
-        let [places, dxs, dys] = [places, dxs, dys].map(|numbers| numbers.as_chunks::<2>().0);
-        let of = |i: usize| {
-            let view = views.map_or([0.0, 0.0, 1.0], |views| views[i]);
-            self.0.footprint(places[i], dxs[i], dys[i], view)
-        };
-        let filtered = |first: usize| {
-            let end = (first + AT_ONCE).min(places.len());
-            let footprints: Vec<Footprint> = (first..end).map(of).collect();
-            self.0.colors(&filter, &footprints)
-        };
-        let pool = pools::pool(pools::threads(threads)?)?;
-        let firsts: Vec<usize> = (0..places.len()).step_by(AT_ONCE).collect();
-        let colors = py.detach(|| {
-            pool.install(|| firsts.into_par_iter().flat_map_iter(filtered).collect::<Vec<_>>())
-        });
-        let mut shape = shape.to_vec();
-        shape.push(3);
-        PyArray1::from_vec(py, colors.into_flattened()).reshape(shape)
+        Ok(given)
+    }
+
+    /// The shape of the pixels.
+    fn shape(&self) -> &[usize] {
+        let [uv, ..] = &self.places;
+        &uv.shape()[..uv.ndim() - 1]
+    }
+
+    fn pixels(&self) -> PyResult<Pixels<'_>> {
+        let [uv, dx, dy] = &self.places;
+        let [places, dx, dy] = [numbers(uv)?, numbers(dx)?, numbers(dy)?];
+        let [places, dx, dy] = [places, dx, dy].map(|numbers| numbers.as_chunks::<2>().0);
+        let views = self.view.as_ref().map(numbers).transpose()?;
+        let views = views.map(|views| views.as_chunks::<3>().0);
+        Ok(Pixels { places, derivatives: [dx, dy], views })
+    }
+}
+
+impl Pixels<'_> {
+    fn footprint(&self, surface: &Prepared, i: usize) -> Footprint {
+        let [dx, dy] = self.derivatives.map(|derivatives| derivatives[i]);
+        // Straight down.
+        let view = self.views.map_or([0.0, 0.0, 1.0], |views| views[i]);
+        surface.footprint(self.places[i], dx, dy, view)
     }
 }
