@@ -366,14 +366,14 @@ fn the_horizon_sees_all_of_what_is_flat() {
 
 #[test]
 fn inspected_pixels_say_what_light_reaches_them() {
-    let mut scene = basrelief::scene::builtin();
+    let mut scene = scene::builtin();
     scene.lights = vec![
         Light::Point { position: Vec3::new(0.0, 0.4, 0.0), intensity: Vec3::splat(1e-3) },
         Light::sun(Vec3::new(-0.45, 0.577, -0.9), Vec3::ONE),
     ];
     let lit = Settings { width: 64, height: 36, lighting: Lighting::Lit, ..Settings::default() };
     let [shadow, light, open] = [View::Shadow, View::Light, View::Occlusion]
-        .map(|view| inspect::measure(&scene, &lit, view).expect("a valid scene"));
+        .map(|view| measure(&scene, &lit, view).expect("a valid scene"));
     let (mut num_dark, mut num_cuts) = (0, 0);
     for y in 0..36 {
         for x in 0..64 {

@@ -9,7 +9,7 @@ use basrelief::relief::{HeightField, ReliefPlace, march};
 use basrelief::shell::{Met, Shell, ViewRay};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
-use basrelief::{Filter, Frame, Layer, Material, Mesh, Rays, Renderer, Scene, Settings};
+use basrelief::{Filter, Frame, Layer, Mesh, Rays, Renderer, Scene, Settings};
 use common::{Random, cobbles, floor_scene, rough_surface};
 use displaced::{
     ball_in_stones, decibels, depths_within, displaced, overlap, scene, show, sphere, torus,
