@@ -85,10 +85,6 @@ impl Receiver {
     /// passes a box that is larger by both.
     fn may_be_hidden_by(&self, disc: &Disc, middle: Vec3, half: Vec3) -> bool {
         let distance = middle.length() + half.length();
-        let height = self.normal.dot(middle) + self.normal.abs().dot(half);
-        if height <= self.top + ROUNDING * distance {
-            return false;
-        }
         let half = half + self.half + distance * (disc.radius + ROUNDING);
         // Along an axis that the ray does not move along, it is within a slab or never.
         let inverse = disc.to_middle.to_array().map(|d| if d == 0.0 { 1e30 } else { 1.0 / d });
@@ -136,8 +132,11 @@ impl Occluders {
                 let height = [a, b, c].map(|corner| receiver.normal.dot(corner));
                 let height = height.into_iter().fold(f32::MIN, f32::max);
                 let distance = a.length().max(b.length()).max(c.length());
-                // Of its box a slanted triangle fills little, so its own height counts.
-                if height > receiver.top + ROUNDING * distance
+                // Below the polygon lies what stands in the relief, which light enters from the front,
+                // and what the relief itself ends in, which light leaves from behind.
+                let is_above = height > receiver.top + ROUNDING * distance;
+                let is_front = disc.to_middle.dot((b - a).cross(c - a)) < 0.0;
+                if (is_above || is_front)
                     && !receiver.own.is_some_and(|own| own.has(disc, &[a, b, c]))
                     && receiver.may_be_hidden_by(disc, (min + max) * 0.5, (max - min) * 0.5)
                 {
