@@ -366,14 +366,14 @@ fn the_horizon_sees_all_of_what_is_flat() {
 
 #[test]
 fn inspected_pixels_say_what_light_reaches_them() {
-    let mut scene = basrelief::scene::builtin();
+    let mut scene = scene::builtin();
     scene.lights = vec![
         Light::Point { position: Vec3::new(0.0, 0.4, 0.0), intensity: Vec3::splat(1e-3) },
         Light::sun(Vec3::new(-0.45, 0.577, -0.9), Vec3::ONE),
     ];
     let lit = Settings { width: 64, height: 36, lighting: Lighting::Lit, ..Settings::default() };
     let [shadow, light, open] = [View::Shadow, View::Light, View::Occlusion]
-        .map(|view| inspect::measure(&scene, &lit, view).expect("a valid scene"));
+        .map(|view| measure(&scene, &lit, view).expect("a valid scene"));
     let (mut num_dark, mut num_cuts) = (0, 0);
     for y in 0..36 {
         for x in 0..64 {
@@ -385,7 +385,7 @@ fn inspected_pixels_say_what_light_reaches_them() {
             };
             assert!((0.0..=1.0).contains(&part) && (0.0..=1.0).contains(&open), "{part} {open}");
             num_dark += usize::from(part < 0.5);
-            if (x + y) % 13 > 0 {
+            if (x + 3 * y) % 41 > 0 {
                 continue;
             }
             // The same by inspection of the pixel.
@@ -395,12 +395,13 @@ fn inspected_pixels_say_what_light_reaches_them() {
             let is_near = (found.0 - Vec3::from(shown)).abs().max_element() < 0.02;
             assert!(is_near && (found.1 - part).abs() < 0.02 && (found.2 - open).abs() < 0.02);
             let Some(cut) = seen.cut else { continue };
-            assert_eq!(seen.main, Some(1), "the sun");
+            let sent = |i: usize| seen.reaching.lights[i].sent.element_sum();
+            assert_eq!(seen.main, Some(usize::from(sent(1) > sent(0))), "the one that sends most");
             assert!(cut.points.windows(2).all(|pair| pair[0].horizon <= pair[1].horizon));
             num_cuts += 1;
         }
     }
-    assert!(num_dark > 50 && num_cuts > 20, "{num_dark} pixels in shadow, {num_cuts} cuts");
+    assert!(num_dark > 50 && num_cuts > 10, "{num_dark} pixels in shadow, {num_cuts} cuts");
     let unlit = Settings { lighting: Lighting::Unlit, ..lit };
     assert!(inspect::pixel(&scene, &unlit, [32, 30]).expect("a surface").light.is_none());
 }
