@@ -385,7 +385,7 @@ fn inspected_pixels_say_what_light_reaches_them() {
             };
             assert!((0.0..=1.0).contains(&part) && (0.0..=1.0).contains(&open), "{part} {open}");
             num_dark += usize::from(part < 0.5);
-            if (x + y) % 13 > 0 {
+            if (x + 3 * y) % 41 > 0 {
                 continue;
             }
             // The same by inspection of the pixel.
@@ -395,12 +395,13 @@ fn inspected_pixels_say_what_light_reaches_them() {
             let is_near = (found.0 - Vec3::from(shown)).abs().max_element() < 0.02;
             assert!(is_near && (found.1 - part).abs() < 0.02 && (found.2 - open).abs() < 0.02);
             let Some(cut) = seen.cut else { continue };
-            assert_eq!(seen.main, Some(1), "the sun");
+            let sent = |i: usize| seen.reaching.lights[i].sent.element_sum();
+            assert_eq!(seen.main, Some(usize::from(sent(1) > sent(0))), "the one that sends most");
             assert!(cut.points.windows(2).all(|pair| pair[0].horizon <= pair[1].horizon));
             num_cuts += 1;
         }
     }
-    assert!(num_dark > 50 && num_cuts > 20, "{num_dark} pixels in shadow, {num_cuts} cuts");
+    assert!(num_dark > 50 && num_cuts > 10, "{num_dark} pixels in shadow, {num_cuts} cuts");
     let unlit = Settings { lighting: Lighting::Unlit, ..lit };
     assert!(inspect::pixel(&scene, &unlit, [32, 30]).expect("a surface").light.is_none());
 }
