@@ -4,7 +4,7 @@
 //! `c` between the normal and the ray, gets `(1 - sqrt(1 - c^2)) / k` deep before it rises again. If
 //! that is more than `T`, it hits whatever the relief is.
 
-use super::NONE;
+use super::neighbors::NONE;
 use crate::scene::Mesh;
 use glam::Vec3;
 

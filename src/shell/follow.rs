@@ -5,7 +5,8 @@
 //! in `t`, is 0; both triangles at an edge find the same `t` there. Between two sides of a prism the
 //! ray is cut into pieces that are straight in the texture. All in f64, one ray at a time.
 
-use super::{NONE, Shell};
+use super::neighbors::NONE;
+use super::prisms::Shell;
 use crate::relief::{HeightField, ReliefPlace};
 use crate::scene::Mesh;
 use glam::{DVec2, DVec3};

@@ -1,7 +1,9 @@
 //! Which triangles of a mesh meet at an edge.
 
-use super::NONE;
 use crate::scene::Mesh;
+
+/// No neighbour: the border of the mesh, or a crease.
+pub(super) const NONE: u32 = u32::MAX;
 
 /// Least cosine between the normals on both sides of an edge that is smooth: beyond 60 degrees it is
 /// a crease.

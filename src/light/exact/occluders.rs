@@ -176,7 +176,7 @@ impl LightRay {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Mesh;
+    use crate::scene::{Material, Mesh};
 
     /// Squares of 2 x 2 that face up, at the heights given.
     fn squares(heights: &[f32]) -> Scene {
@@ -185,7 +185,8 @@ mod tests {
             let corners = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].map(corner);
             Mesh::new(corners.to_vec(), vec![], vec![], vec![[0, 1, 2], [0, 2, 3]])
         });
-        Scene { meshes: meshes.collect(), ..Scene::default() }
+        let materials = vec![Material::default()];
+        Scene { meshes: meshes.collect(), materials, ..Scene::default() }
     }
 
     fn up(height: f64, reach: f64) -> LightRay {
