@@ -1,7 +1,8 @@
 //! What of a scene's light gets to a hit, light by light: for pictures and numbers that show why a
 //! place is bright or dark.
 
-use super::{ExactLight, Ground, Hit, Sequence, cosine_direction, frame_around};
+use super::rays::{ExactLight, Ground, Hit, cosine_direction, frame_around};
+use super::sequence::Sequence;
 use glam::Vec3;
 
 /// What of a scene's light gets to a hit.
