@@ -4,7 +4,7 @@
 //! each pixel takes of them what it sees.
 
 use super::ground::{Ground, Swept};
-use super::points::HiddenLights;
+use super::hidden_lights::HiddenLights;
 use super::shade::{ShadeScratch, Shader};
 use crate::raster::QuadBlock;
 use crate::simd::PixelLanes;

@@ -5,7 +5,7 @@
 //! in the way: where nothing is, no ray is sent and nothing of the relief is looked for.
 
 use super::ground::Ground;
-use super::points::HiddenLights;
+use super::hidden_lights::HiddenLights;
 use super::shade::Shader;
 use super::shadows::{Hidden, Places, along, half_width, of_lane, places, range, steps};
 use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};

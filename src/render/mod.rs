@@ -13,6 +13,7 @@ mod curved_lights;
 mod curved_shadows;
 mod exact;
 mod ground;
+mod hidden_lights;
 mod mapped;
 mod open_sky;
 mod outlines;

@@ -6,46 +6,17 @@
 //! place. Rays from the relief to the light tell which meshes are in its way.
 
 use super::ground::{Ground, Swept};
+use super::hidden_lights::HiddenLights;
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
 use super::shadows::{FIRST, Places, RAYS, of_lane, places, ray_offset};
 use crate::filter::{Batch, Filtered};
 use crate::light::exact::{LightRay, Occluders, Receiver};
-use crate::light::{FrameLanes, LocalLights};
+use crate::light::FrameLanes;
 use crate::raster::{LitLanes, QuadBlock};
 use crate::scene::Light;
 use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
 use std::ops::Range;
-
-/// The parts of a scene's lights that meshes hide from a block's pixels: light by light and pair by
-/// pair. Nothing for a light that all of them see.
-#[derive(Clone, Debug)]
-pub(super) struct HiddenLights(pub(super) Vec<Vec<PixelLanes>>);
-
-impl HiddenLights {
-    /// Nothing is hidden of so many lights.
-    pub(super) fn none(num: usize) -> Self {
-        Self(vec![Vec::new(); num])
-    }
-
-    /// Takes what is hidden from the lights of the covered pixels of some pairs.
-    pub(super) fn dim(
-        &self,
-        lights: &mut [LocalLights],
-        (block, pairs): (&QuadBlock, Range<usize>),
-    ) {
-        if self.0.iter().all(Vec::is_empty) {
-            return;
-        }
-        let pixels = pairs.flat_map(|i| block.pair(i).covered().map(move |lane| (i, lane)));
-        for (lights, (pair, lane)) in lights.iter_mut().zip(pixels) {
-            for (light, hidden) in lights.lights.iter_mut().zip(&self.0) {
-                let hidden = hidden.get(pair).map_or(0.0, |hidden| hidden.as_array()[lane]);
-                light.intensity *= 1.0 - hidden;
-            }
-        }
-    }
-}
 
 impl Shader<'_> {
     /// Finds what meshes hide of points from a block's pixels.

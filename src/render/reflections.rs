@@ -11,7 +11,7 @@
 //! hide nothing.
 
 use super::ground::{Ground, in_lanes};
-use super::points::HiddenLights;
+use super::hidden_lights::HiddenLights;
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
 use crate::filter::{Batch, Filtered, Prepared};
 use crate::light::reflection::Fresnel;

@@ -3,9 +3,9 @@
 use super::curved_lights::CurvedLights;
 use super::exact::Exact;
 use super::ground::{Ground, in_lanes, of_hits, pixel_center, surface_point};
+use super::hidden_lights::HiddenLights;
 use super::mapped::Glow;
 use super::outlines::Outlines;
-use super::points::HiddenLights;
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Samples, Scratch, Traits, Work};
 use crate::footprint::{Footprint, FootprintRule, Footprints};

@@ -14,7 +14,7 @@
 //! ```
 
 use super::ground::{Ground, LitPiece};
-use super::points::HiddenLights;
+use super::hidden_lights::HiddenLights;
 use super::shade::{ShadeScratch, Shader};
 use crate::light::exact::{Occluders, Receiver};
 use crate::light::{Disc, Vectors, cross, repeat_length};

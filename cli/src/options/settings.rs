@@ -184,7 +184,7 @@ mod tests {
                 line.push(format!("--{}={default}", arg.get_long().unwrap()));
             }
         }
-        assert_eq!(line.len(), 19, "{line:?}");
+        assert_eq!(line.len(), 20, "{line:?}");
         let options = options(&line.join(" ")).unwrap();
         assert_eq!(options.settings(Look::default()).unwrap(), Settings::default());
         assert_eq!(Filter::ALL.map(|filter| options.filter.apply(filter)), Filter::ALL);
