@@ -219,7 +219,7 @@ pub struct SweepExtent {
     pub depth: f32,
 }
 
-/// The finest level on which a sweep is at most [`most_across`] texels wide for so many `lines`, and
+/// The finest level on which a sweep of so many `lines` is at most 2 to 2.75 texels a line wide, and
 /// short enough. What
 /// the level loses in occlusion the caller has taken into account: each level finer doubles `lines`.
 pub fn for_sweep(surface: &Surface, extent: &SweepExtent, lines: u32) -> usize {

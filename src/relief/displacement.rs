@@ -31,7 +31,7 @@ pub fn displacement(view: &[PixelLanes; 3], relief_depth: f32) -> [PixelLanes; 2
 ///                  --_  --   d = m u - k u^2 / 2, so u = 2 d / (m + sqrt(m^2 - 2 k d))
 /// ```
 ///
-/// The displacement is linear in the depth, and so can be right at one: that of [`SEEN_DEPTH`].
+/// The displacement is linear in the depth, and so can be right at one: 0.55 of the deepest relief.
 pub fn bent(
     [du, dv]: &[PixelLanes; 2],
     [alpha, beta, _]: &[PixelLanes; 3],
