@@ -426,7 +426,7 @@ mod tests {
         Frame::filled(8, 8, [0.5, 0.5, 0.5, 1.0]).save(path("a_height.png")).unwrap();
         let mut viewer = viewer();
         assert!(viewer.load(&path("a_height.png")).is_none());
-        assert!(viewer.message.take().unwrap().contains("OBJ"));
+        assert!(viewer.message.take().unwrap().contains("model"));
         assert!(viewer.load(&path("none.obj")).is_none());
         assert!(viewer.message.take().unwrap().contains("none.obj"));
         assert!(
