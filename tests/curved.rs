@@ -4,12 +4,12 @@ mod common;
 
 use basrelief::light::{Horizons, LinearSky};
 use basrelief::relief::{LitParts, RowScratch};
-use basrelief::texture::{ColorImage, Surface, SurfaceMaps, srgb_from_linear};
+use basrelief::texture::{ColorImage, Surface, SurfaceMaps};
 use basrelief::{
     Camera, Filter, Frame, Light, Lighting, Material, Mesh, Rays, Region, Renderer, Scene,
     Settings, Sky, render,
 };
-use common::cobbles;
+use common::{cobbles, decibels};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -82,17 +82,6 @@ fn draw(scene: &Scene, filter: Filter) -> Frame {
     render(scene.clone(), lit(filter)).expect("a valid scene")
 }
 
-/// How near two frames are where both show a surface, as they are encoded.
-fn decibels(a: &Frame, b: &Frame) -> f32 {
-    let both = a.pixels.iter().zip(&b.pixels).filter(|(a, b)| a[3] == 1.0 && b[3] == 1.0);
-    let squares = both.flat_map(|(a, b)| {
-        [0, 1, 2].map(|c| (srgb_from_linear(a[c]) - srgb_from_linear(b[c])).powi(2))
-    });
-    let (sum, num) = squares.fold((0.0, 0.0), |(sum, num), square| (sum + square, num + 1.0));
-    assert!(num > 3000.0, "a part of the picture");
-    -10.0 * (sum / num as f32).log10()
-}
-
 #[test]
 fn a_torus_is_lit_as_the_truth_lights_it() {
     let suns = [Light::sun(Vec3::new(-0.45, 0.577, -0.9), Vec3::splat(0.8))];
@@ -104,7 +93,7 @@ fn a_torus_is_lit_as_the_truth_lights_it() {
         let scene = torus(cobbles(128, 4), lights, sky);
         let [swept, truth] = [Filter::default(), Filter::Truth(Rays { samples: 64 })]
             .map(|filter| draw(&scene, filter));
-        let found = decibels(&swept, &truth);
+        let found = decibels(&swept, &truth, 3000.0);
         assert!(found > least, "{found} dB, {} suns under {sky}", lights.len());
     }
 }

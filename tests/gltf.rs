@@ -1,14 +1,16 @@
 //! glTF: what is read, how it is read, and what is refused with which words.
 
+#[path = "common/files.rs"]
+#[allow(unreachable_pub, reason = "shared between tests")]
+mod files;
+
 use basrelief::load::{LoadOptions, Loaded, MaterialOptions, load, load_gltf_bytes};
 use basrelief::texture::{Texture, Wrap};
 use basrelief::{Camera, Error, Light, Settings, render};
+use files::Files;
 use glam::{Vec2, Vec3};
 use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage, Rgba, RgbaImage};
-use std::fs;
-use std::path::PathBuf;
 use std::sync::Arc;
-use tempfile::TempDir;
 
 /// A unit square in the xy plane: positions, texture coordinates (v down), normals, indices.
 const POSITIONS: [f32; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
@@ -85,31 +87,9 @@ fn square(material: &str, rest: &str) -> String {
     )
 }
 
-/// A folder with a model and its files.
-struct Files {
-    folder: TempDir,
-    options: LoadOptions,
-}
-
 impl Files {
     fn new() -> Self {
-        let folder = tempfile::tempdir().expect("a folder");
-        let options = LoadOptions { keep_normals: true, ..LoadOptions::default() };
-        Self { folder, options }
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
-        fs::create_dir_all(self.path(name).parent().expect("a folder")).expect("a folder");
-        fs::write(self.path(name), bytes).expect("written");
-    }
-
-    fn image(&self, name: &str, image: impl Into<DynamicImage>) {
-        fs::create_dir_all(self.path(name).parent().expect("a folder")).expect("a folder");
-        image.into().save(self.path(name)).expect("saved");
+        Self::empty(LoadOptions { keep_normals: true, ..LoadOptions::default() })
     }
 
     fn load(&self, name: &str) -> Loaded {

@@ -1,35 +1,29 @@
 //! Loading: what is read, how it is read, and what is refused with which words.
 
+#[path = "common/files.rs"]
+#[allow(unreachable_pub, reason = "shared between tests")]
+mod files;
+
 use basrelief::Error;
 use basrelief::load::{
     HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY, load, load_obj_bytes,
     load_reporting,
 };
 use basrelief::texture::{Surface, Wrap};
+use files::Files;
 use glam::{Vec2, Vec3};
-use image::{
-    DynamicImage, GrayImage, ImageBuffer, Luma, Rgb, Rgb32FImage, RgbImage, Rgba, RgbaImage,
-};
+use image::{GrayImage, ImageBuffer, Luma, Rgb, Rgb32FImage, RgbImage, Rgba, RgbaImage};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
-use tempfile::TempDir;
 
 const QUAD: &str = "mtllib s.mtl\no floor\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
                     usemtl stone\nf 1/1 2/2 3/3 4/4\n";
 
-/// A folder with `s.obj`, `s.mtl` and images, and the options to load it with.
-struct Files {
-    folder: TempDir,
-    options: LoadOptions,
-}
-
+/// With `s.obj`, `s.mtl` and images.
 impl Files {
     fn new(obj: &str, mtl: &str) -> Self {
-        let files = Self {
-            folder: tempfile::tempdir().expect("a folder"),
-            options: LoadOptions::default(),
-        };
+        let files = Self::empty(LoadOptions::default());
         files.write("s.obj", obj);
         files.write("s.mtl", mtl);
         files
@@ -38,20 +32,6 @@ impl Files {
     /// The quad with one material of these lines.
     fn quad(material: &str) -> Self {
         Self::new(QUAD, &format!("newmtl stone\n{material}\n"))
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
-        fs::create_dir_all(self.path(name).parent().expect("a folder")).expect("a folder");
-        fs::write(self.path(name), bytes).expect("written");
-    }
-
-    fn image(&self, name: &str, image: impl Into<DynamicImage>) {
-        fs::create_dir_all(self.path(name).parent().expect("a folder")).expect("a folder");
-        image.into().save(self.path(name)).expect("saved");
     }
 
     fn load(&self) -> Loaded {

@@ -1,10 +1,22 @@
 //! What several tests need: numbers from a fixed seed, and small surfaces.
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part")]
 
-use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Camera, Ewa, Filter, Horizon, Material, Mesh, Scene, Visible};
+use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap, srgb_from_linear};
+use basrelief::{Camera, Ewa, Filter, Frame, Horizon, Material, Mesh, Scene, Visible};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
+
+/// How near two frames are where both show a surface, as they are encoded; of so many numbers at
+/// least.
+pub fn decibels(a: &Frame, b: &Frame, least: f32) -> f32 {
+    let both = a.pixels.iter().zip(&b.pixels).filter(|(a, b)| a[3] == 1.0 && b[3] == 1.0);
+    let squares = both.flat_map(|(a, b)| {
+        [0, 1, 2].map(|c| (srgb_from_linear(a[c]) - srgb_from_linear(b[c])).powi(2))
+    });
+    let (sum, num) = squares.fold((0.0, 0.0), |(sum, num), square| (sum + square, num + 1.0));
+    assert!(num > least, "a part of the picture");
+    -10.0 * (sum / num).max(1e-12).log10()
+}
 
 /// Numbers from a fixed seed (splitmix64).
 pub struct Random(pub u64);

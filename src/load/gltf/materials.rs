@@ -128,21 +128,15 @@ impl GltfMaterial {
         Self {
             plain,
             albedo: pbr.base_color_texture.as_ref().map(texture_ref),
-            normal: normal.map(|normal| TextureRef {
-                index: normal.index,
-                placement: placed(
-                    normal.tex_coord,
-                    normal.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM)),
-                ),
+            normal: normal.map(|texture| {
+                let transform = texture.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM));
+                texture_with(texture.index, texture.tex_coord, transform)
             }),
             normal_scale: normal.map_or(1.0, |normal| normal.scale),
             metal_rough: pbr.metallic_roughness_texture.as_ref().map(texture_ref),
-            occlusion: occlusion.map(|texture| TextureRef {
-                index: texture.index,
-                placement: placed(
-                    texture.tex_coord,
-                    texture.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM)),
-                ),
+            occlusion: occlusion.map(|texture| {
+                let transform = texture.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM));
+                texture_with(texture.index, texture.tex_coord, transform)
             }),
             occlusion_strength: unit(occlusion.map_or(1.0, |texture| texture.strength.0)),
             emissive: from.emissive_texture.as_ref().map(texture_ref),
@@ -202,9 +196,14 @@ fn threshold(from: &material::Material) -> Option<f32> {
 /// The name under which textures of normals and occlusion have their transform.
 const TRANSFORM: &str = "KHR_texture_transform";
 
-fn placed(set: u32, transform: Option<&Value>) -> Placement {
+/// A texture whose transform is not read yet.
+fn texture_with(
+    index: Index<gltf::json::Texture>,
+    set: u32,
+    transform: Option<&Value>,
+) -> TextureRef {
     let transform = transform.and_then(|value| deserialize::from_value(value.clone()).ok());
-    Placement::new(set, transform.as_ref())
+    TextureRef { index, placement: Placement::new(set, transform.as_ref()) }
 }
 
 fn texture_ref(info: &texture::Info) -> TextureRef {
