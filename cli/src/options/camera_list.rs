@@ -7,7 +7,8 @@
 //!
 //! The camera of line n is that of frame n. What a line leaves out is the scene's camera's.
 
-use crate::options::scene::CameraOptions;
+use crate::options::camera::CameraOptions;
+use crate::options::scene_file;
 use crate::refusal::Refusal;
 use basrelief::Camera;
 use std::fs::File;
@@ -26,10 +27,7 @@ impl CameraList {
         if path == Path::new("-") {
             return Self::of(Path::new("stdin"), stdin().lock());
         }
-        if !path.is_file() {
-            let reason = if path.exists() { "is not a file" } else { "no such file" };
-            return Err(Refusal::file(path, reason));
-        }
+        scene_file::length_of(path)?;
         let file = File::open(path).map_err(|e| Refusal::file(path, e))?;
         Self::of(path, BufReader::new(file))
     }

@@ -19,6 +19,7 @@ pub(crate) mod threads;
 #[cfg(feature = "viewer")]
 pub(crate) mod viewer;
 
+mod camera;
 mod camera_list;
 mod camera_path;
 mod file_values;

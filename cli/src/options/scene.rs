@@ -2,17 +2,18 @@
 //!
 //! The tables of a scene file hold the same options under the same names: see `scene_file`.
 
+use crate::options::camera::CameraOptions;
 use crate::options::choices::{self, ON_OFF, one_of};
 use crate::options::file_values::{self, PointLight, Spelt, Sun};
 use crate::options::settings::Look;
-use crate::options::values::{self, Pose};
+use crate::options::values;
 use crate::progress::Progress;
 use crate::refusal::Refusal;
 use basrelief::load::{
     self, HeightSense, LoadOptions, LoadStage, Loaded, MaterialOptions, NormalY,
 };
 use basrelief::texture::Wrap;
-use basrelief::{Camera, Intrinsics, Light, PoseAxes, Scene, Settings, Sky, Tone, scene};
+use basrelief::{Light, Scene, Settings, Sky, Tone, scene};
 use clap::Args;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -133,46 +134,6 @@ pub(crate) struct LimitOptions {
 }
 
 #[derive(Args, Clone, Debug, Default, Serialize, Deserialize)]
-#[command(next_help_heading = "Camera (what is not given frames the scene)")]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub(crate) struct CameraOptions {
-    /// Where the eye is, in the scene's units
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
-    #[serde(deserialize_with = "file_values::vector")]
-    eye: Option<Vec3>,
-    /// The point in the middle of the picture
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
-    #[serde(deserialize_with = "file_values::vector")]
-    target: Option<Vec3>,
-    /// The direction that points upwards in the picture
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
-    #[serde(deserialize_with = "file_values::direction")]
-    up: Option<Vec3>,
-    /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEG", value_parser = values::field_of_view, allow_hyphen_values = true)]
-    #[serde(deserialize_with = "file_values::field_of_view")]
-    fov: Option<f32>,
-    /// Focal lengths and optical axis in pixels of the whole frame, whose first pixel has its centre
-    /// at 0.5,0.5; in place of --fov
-    #[arg(long, value_name = "FX,FY,CX,CY", value_parser = values::intrinsics, allow_hyphen_values = true)]
-    #[serde(deserialize_with = "file_values::intrinsics")]
-    intrinsics: Option<[f32; 4]>,
-    /// Where the camera is and how it lies: the 4x4 matrix from its axes to the world, 16 numbers
-    /// row by row; in place of --eye, --target and --up
-    #[arg(long, value_name = "M11,M12,...,M44", value_parser = values::pose, allow_hyphen_values = true, conflicts_with_all = ["eye", "target", "up"])]
-    #[serde(deserialize_with = "file_values::pose")]
-    pose: Option<Pose>,
-    /// The axes of --pose [default: opencv]
-    #[arg(long, value_name = "WHOSE", value_parser = one_of(choices::POSE_AXES), requires = "pose")]
-    #[serde(with = "choices")]
-    pose_axes: Option<PoseAxes>,
-    /// Distance from the eye before which nothing is drawn, in the scene's units
-    #[arg(long, value_name = "D", value_parser = values::above_zero, allow_hyphen_values = true)]
-    #[serde(deserialize_with = "file_values::above_zero")]
-    near: Option<f32>,
-}
-
-#[derive(Args, Clone, Debug, Default, Serialize, Deserialize)]
 #[command(next_help_heading = "Light and background")]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct LightOptions {
@@ -256,7 +217,7 @@ impl SceneOptions {
 
     /// Sets the camera, lights and background that are given.
     pub(crate) fn set(&self, scene: &mut Scene) {
-        self.camera.place(&mut scene.camera);
+        scene.camera = self.camera.placed(&scene.camera);
         self.light.set(scene);
     }
 
@@ -329,76 +290,6 @@ fn built_in() -> Loaded {
     Loaded { scene: scene::builtin(), choices, ..Loaded::default() }
 }
 
-impl From<&Camera> for CameraOptions {
-    /// Options that give all of `camera`.
-    fn from(camera: &Camera) -> Self {
-        let Camera { eye, target, up, fov_degrees, intrinsics, near } = *camera;
-        Self {
-            eye: Some(eye),
-            target: Some(target),
-            up: Some(up),
-            fov: Some(fov_degrees),
-            intrinsics: intrinsics.map(|Intrinsics { fx, fy, cx, cy }| [fx, fy, cx, cy]),
-            // The eye, target and up say the same.
-            pose: None,
-            pose_axes: None,
-            near: Some(near),
-        }
-    }
-}
-
-impl CameraOptions {
-    /// Refuses what contradicts itself; on the command line the options' own rules do.
-    pub(crate) fn check(&self) -> Result<(), &'static str> {
-        let is_placed = self.eye.is_some() || self.target.is_some() || self.up.is_some();
-        match self.pose {
-            Some(_) if is_placed => Err("a pose takes the place of eye, target and up"),
-            None if self.pose_axes.is_some() => Err("pose-axes needs a pose"),
-            _ => Ok(()),
-        }
-    }
-
-    /// Drops a pose where `over` says where the eye is, and the other way round.
-    pub(crate) fn make_way_for(&mut self, over: &Self) {
-        if over.pose.is_some() {
-            (self.eye, self.target, self.up) = (None, None, None);
-        }
-        if over.eye.is_some() || over.target.is_some() || over.up.is_some() {
-            (self.pose, self.pose_axes) = (None, None);
-        }
-    }
-
-    /// A camera with what these say.
-    pub(crate) fn placed(&self, start: &Camera) -> Camera {
-        let mut camera = *start;
-        self.place(&mut camera);
-        camera
-    }
-
-    fn place(&self, camera: &mut Camera) {
-        camera.eye = self.eye.unwrap_or(camera.eye);
-        camera.target = self.target.unwrap_or(camera.target);
-        camera.up = self.up.unwrap_or(camera.up);
-        camera.fov_degrees = self.fov.unwrap_or(camera.fov_degrees);
-        camera.near = self.near.unwrap_or(camera.near);
-        if let Some([fx, fy, cx, cy]) = self.intrinsics {
-            camera.intrinsics = Some(Intrinsics { fx, fy, cx, cy });
-        }
-        if let Some(pose) = &self.pose {
-            let axes = self.pose_axes.unwrap_or(PoseAxes::OpenCv);
-            // The option's parser refused what is no pose, whatever the axes.
-            *camera = camera.posed(pose, axes).unwrap_or(*camera);
-            return;
-        }
-        let is_vertical =
-            (camera.target - camera.eye).normalize_or_zero().cross(camera.up).length() < 1e-4;
-        if is_vertical && self.up.is_none() {
-            // Seen from straight above or below: what lies at the back is drawn at the top.
-            camera.up = Vec3::NEG_Z;
-        }
-    }
-}
-
 impl LightOptions {
     /// Lights that are given take the place of the scene's own.
     fn set(&self, scene: &mut Scene) {
@@ -428,6 +319,7 @@ impl LightOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use basrelief::Camera;
     use clap::Parser;
 
     #[derive(Parser)]
@@ -445,7 +337,7 @@ mod tests {
     fn camera_keeps_what_is_not_given() {
         let mut camera = Camera::framing(Vec3::ZERO, Vec3::ONE, 1.0);
         let framing = camera;
-        parse("--eye -1,2,-3 --fov 30").unwrap().camera.place(&mut camera);
+        camera = parse("--eye -1,2,-3 --fov 30").unwrap().camera.placed(&camera);
         assert_eq!(
             camera,
             Camera { eye: Vec3::new(-1.0, 2.0, -3.0), fov_degrees: 30.0, ..framing }
@@ -455,7 +347,7 @@ mod tests {
     #[test]
     fn view_straight_down_needs_no_up() {
         let mut camera = Camera::default();
-        parse("--eye 0,5,0").unwrap().camera.place(&mut camera);
+        camera = parse("--eye 0,5,0").unwrap().camera.placed(&camera);
         assert_eq!(camera.validate().ok(), Some(()));
     }
 

@@ -23,9 +23,10 @@
 //! Keys are the names of options, tables are the headings of the help. Files are named relative to
 //! the scene file. An option on the command line overrides the key.
 
+use crate::options::camera::CameraOptions;
 use crate::options::file_values;
 use crate::options::filter::FilterOptions;
-use crate::options::scene::{CameraOptions, LightOptions, LimitOptions, MapOptions, SceneOptions};
+use crate::options::scene::{LightOptions, LimitOptions, MapOptions, SceneOptions};
 use crate::options::settings::{FrameOptions, SettingsOptions};
 use crate::refusal::{Refusal, option_of};
 use basrelief::{Camera, Error, Settings};
@@ -175,10 +176,17 @@ impl SceneFile {
 
 /// The text of a file of at most 16 MiB.
 pub(crate) fn read_text(path: &Path) -> Result<String, Refusal> {
+    if length_of(path)? > 1 << 24 {
+        return Err(Refusal::file(path, "is larger than 16 MiB"));
+    }
+    std::fs::read_to_string(path).map_err(|e| Refusal::file(path, e))
+}
+
+/// How long a file is; refuses what is none.
+pub(crate) fn length_of(path: &Path) -> Result<u64, Refusal> {
     match std::fs::metadata(path) {
         Ok(found) if !found.is_file() => Err(Refusal::file(path, "is not a file")),
-        Ok(found) if found.len() > 1 << 24 => Err(Refusal::file(path, "is larger than 16 MiB")),
-        Ok(_) => std::fs::read_to_string(path).map_err(|e| Refusal::file(path, e)),
+        Ok(found) => Ok(found.len()),
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
             Err(Refusal::file(path, "no such file"))
         }
