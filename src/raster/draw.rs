@@ -217,16 +217,15 @@ impl Painter<'_> {
         // The number of samples is a constant of the code below, so that its arrays have a size and
         // its loops a length that the compiler knows.
         match self.drawn.settings.msaa {
-            8 => self.see_samples::<8>(rect, scratch),
-            4 => self.see_samples::<4>(rect, scratch),
-            _ => self.see_samples::<1>(rect, scratch),
+            8 => self.see_quads::<8>(rect, scratch),
+            4 => self.see_quads::<4>(rect, scratch),
+            _ => self.see_quads::<1>(rect, scratch),
         }
-        let Scratch { visibility, quads, .. } = scratch;
-        match self.drawn.settings.msaa {
-            8 => gather::<8>(visibility, quads),
-            4 => gather::<4>(visibility, quads),
-            _ => gather::<1>(visibility, quads),
-        }
+    }
+
+    fn see_quads<const S: usize>(&self, rect: &Rect, scratch: &mut Scratch) {
+        self.see_samples::<S>(rect, scratch);
+        gather::<S>(&scratch.visibility, &mut scratch.quads);
     }
 
     /// Finds what the samples of a tile see.

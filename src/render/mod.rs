@@ -14,6 +14,7 @@ mod curved_shadows;
 mod exact;
 mod ground;
 mod hidden_lights;
+mod lit;
 mod mapped;
 mod open_sky;
 mod outlines;

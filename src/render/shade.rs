@@ -2,20 +2,19 @@
 
 use super::curved_lights::CurvedLights;
 use super::exact::Exact;
-use super::ground::{Ground, in_lanes, of_hits, pixel_center, surface_point};
+use super::ground::{Ground, in_lanes, of_hits, pixel_center};
 use super::hidden_lights::HiddenLights;
 use super::mapped::Glow;
 use super::outlines::Outlines;
 use super::prepared::PreparedScene;
 use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Samples, Scratch, Traits, Work};
-use crate::footprint::{Footprint, FootprintRule, Footprints};
+use crate::footprint::{FootprintRule, Footprints};
+use crate::light::LocalLights;
 use crate::light::exact::ExactLight;
-use crate::light::{LocalLights, Reflected};
 use crate::raster::{Pool, QuadBlock, QuadPair};
-use crate::scene::{Finish, Material, Scene};
+use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
-use crate::texture::Texel;
 use glam::Vec3;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -370,79 +369,9 @@ impl<'a> Shader<'a> {
         }
     }
 
-    fn is_lit(&self) -> bool {
-        self.settings.lighting == Lighting::Lit
-    }
-
     pub(super) fn count(&self, work: Work) {
         self.num_texels[0].fetch_add(work.num_tested, Ordering::Relaxed);
         self.num_texels[1].fetch_add(work.num_averaged, Ordering::Relaxed);
-    }
-
-    /// The colour of a filtered texel of a pixel.
-    fn lit(
-        &self,
-        ground: &Ground,
-        (texel, pixel): (&Texel, &Footprint),
-        lights: Option<&LocalLights>,
-    ) -> Vec3 {
-        let color = ground.color_of(ground.prepared.surface(), texel);
-        let Some(lights) = lights else { return color };
-        let normal = Vec3::from(texel.normal);
-        let has_light = self.traits.asks_for_lights;
-        self.lit_color(&ground.finish(pixel), (color, has_light), normal, lights)
-    }
-
-    /// A colour under lights; a filter that asks for lights has the diffuse part in its mean
-    /// already, texel by texel.
-    fn lit_color(
-        &self,
-        finish: &Finish,
-        (color, has_light): (Vec3, bool),
-        normal: Vec3,
-        lights: &LocalLights,
-    ) -> Vec3 {
-        let (sky, mut base) = (&self.scene.sky, color);
-        let mut diffuse = color;
-        if !has_light {
-            diffuse *= lights.diffuse(normal, sky);
-        } else if finish.metallic > 0.0 {
-            // What has this colour in this light.
-            base /= lights.diffuse(normal, sky).max(Vec3::splat(1e-6));
-        }
-        let reflected = self.reflected((finish, base), normal, lights, None);
-        diffuse * (reflected.passed * (1.0 - finish.metallic)) + reflected.added
-    }
-
-    /// What a material whose base colour is `base` does with lights.
-    pub(super) fn reflected(
-        &self,
-        (finish, base): (&Finish, Vec3),
-        normal: Vec3,
-        lights: &LocalLights,
-        highlights: Option<Vec3>,
-    ) -> Reflected {
-        let reflectance = self.prepared.reflectance();
-        lights.reflected(normal, (finish, base), &self.scene.sky, reflectance, highlights)
-    }
-
-    /// Lists the lights of the covered pixels of pairs of a block, pair by pair and lane by lane.
-    pub(super) fn list_lights(
-        &self,
-        (block, pairs): (&QuadBlock, Range<usize>),
-        lights: &mut Vec<LocalLights>,
-    ) {
-        lights.extend(pairs.map(|index| block.pair(index)).flat_map(|pair| {
-            pair.covered()
-                .filter_map(move |lane| self.lights_at(&pair, lane, pixel_center(&pair, lane)))
-        }));
-    }
-
-    /// The lights at a place on the screen, if there is lighting.
-    fn lights_at(&self, pair: &QuadPair, lane: usize, place: [f32; 2]) -> Option<LocalLights> {
-        let point = self.is_lit().then(|| surface_point(pair.planes[lane / 4], place))??;
-        let Scene { camera, lights, sky, .. } = self.scene;
-        Some(LocalLights::at(&point, camera.eye, lights, sky))
     }
 }
 
