@@ -1,6 +1,6 @@
 //! A sun's disc.
 
-use crate::scene::angle;
+use crate::scene::{Light, angle};
 use glam::Vec3;
 
 /// A sun as it is seen from anywhere.
@@ -17,6 +17,16 @@ impl Disc {
     pub fn new(to_middle: Vec3, degrees: f32) -> Self {
         let [cos, sin] = angle::cos_sin(f64::from(degrees) * (0.5 / 360.0));
         Self { to_middle, radius: (sin / cos) as f32 }
+    }
+
+    /// Of a light, if it is a sun.
+    pub fn of(light: &Light) -> Option<Self> {
+        match *light {
+            Light::Sun { to_light, angular_size, .. } => {
+                Some(Self::new(to_light.normalize_or_zero(), angular_size))
+            }
+            Light::Point { .. } => None,
+        }
     }
 
     /// Unit directions to so many points of it, each of which stands for the same part.

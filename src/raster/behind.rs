@@ -44,9 +44,9 @@ pub trait Follow: Sync {
     fn may_be_passed(&self, triangle: [u32; 2]) -> bool;
     /// Whether a triangle is seen from behind.
     fn is_seen_from_behind(&self, triangle: [u32; 2]) -> bool;
-    /// The corners of a triangle of a mesh with relief where that is deepest, along the view as the
-    /// [`Geometry`] has it: x, y and w.
-    fn deepest(&self, triangle: [u32; 2]) -> [Vec3; 3];
+    /// The corners of a triangle where the relief of its mesh is deepest, along the view as the
+    /// [`Geometry`] has it: x, y and w. `None` without relief.
+    fn deepest(&self, triangle: [u32; 2]) -> Option<[Vec3; 3]>;
     /// Whether the ray through a place of the screen, in pixels, surely hits the relief of a triangle,
     /// and a distance along the view by which it has: quicker than to follow it.
     fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32>;

@@ -41,11 +41,9 @@ impl FollowScratch {
         let Self { samples, deepest, reaches, .. } = self;
         deepest.clear();
         deepest.extend((0..asked.list.len()).map(|local| {
-            let triangle = asked.triangle(local);
-            asked.follow.has_relief(triangle[0]).then(|| {
-                let view = asked.follow.deepest(triangle).map(|c| c.as_dvec3().to_array());
-                ScreenBasis::new(view, asked.geometry.projection().center).inverse_w()
-            })
+            let corners = asked.follow.deepest(asked.triangle(local))?;
+            let view = corners.map(|corner| corner.as_dvec3().to_array());
+            Some(ScreenBasis::new(view, asked.geometry.projection().center).inverse_w())
         }));
         reaches.clear();
         reaches.resize(samples.len(), (f32x8::splat(f32::INFINITY), u32x8::splat(NONE)));

@@ -35,9 +35,7 @@ impl CurvedLights {
             lights.filter(|(i, _)| swept.lights >> i & 1 == 1).map(|(_, light)| *light)
         };
         let discs = lights().filter_map(|light| match light {
-            Light::Sun { to_light, intensity, angular_size } => {
-                Some((Disc::new(to_light.normalize_or_zero(), angular_size), intensity))
-            }
+            Light::Sun { intensity, .. } => Disc::of(&light).map(|disc| (disc, intensity)),
             Light::Point { .. } => None,
         });
         let discs: Vec<(Disc, Vec3)> = discs.collect();

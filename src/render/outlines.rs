@@ -2,10 +2,10 @@
 
 use crate::geometry::Projection;
 use crate::light::SurfacePoint;
-use crate::raster::{Behind, Follow};
+use crate::raster::Behind;
 use crate::relief::HeightField;
 use crate::scene::Scene;
-use crate::shell::{Met, ReliefHit, Shell, ViewRay, is_seen_from_behind};
+use crate::shell::{Met, ReliefHit, Shell, ViewRay};
 use crate::simd::{PixelLanes, set_bits};
 use glam::{DVec3, Vec3};
 
@@ -91,41 +91,36 @@ impl<'a> Outlines<'a> {
             shell.follow(mesh, field, triangle, &ray)
         }
     }
-}
 
-impl Follow for Outlines<'_> {
-    fn has_relief(&self, mesh: u32) -> bool {
+    /// Whether a mesh has relief.
+    pub(super) fn has_relief(&self, mesh: u32) -> bool {
         self.reliefs[mesh as usize].is_some()
     }
 
-    fn may_be_passed(&self, [mesh, triangle]: [u32; 2]) -> bool {
+    /// Whether a ray from the eye may pass the relief of a triangle.
+    pub(super) fn may_be_passed(&self, [mesh, triangle]: [u32; 2]) -> bool {
         self.reliefs[mesh as usize].is_some_and(|(shell, _)| {
             let mesh = &self.scene.meshes[mesh as usize];
             shell.may_be_passed(mesh, triangle, self.scene.camera.eye)
         })
     }
 
-    fn is_seen_from_behind(&self, [mesh, triangle]: [u32; 2]) -> bool {
-        is_seen_from_behind(&self.scene.meshes[mesh as usize], triangle, self.scene.camera.eye)
-    }
-
-    fn deepest(&self, [mesh, triangle]: [u32; 2]) -> [Vec3; 3] {
-        let eye = self.scene.camera.eye;
-        let relief = self.reliefs[mesh as usize];
+    /// See [`Follow::deepest`](crate::raster::Follow::deepest).
+    pub(super) fn deepest(&self, [mesh, triangle]: [u32; 2]) -> Option<[Vec3; 3]> {
+        let (shell, _) = self.reliefs[mesh as usize]?;
         let mesh = &self.scene.meshes[mesh as usize];
-        let corners = match relief {
-            Some((shell, _)) => shell.deepest(mesh, triangle, eye),
-            None => mesh.triangles[triangle as usize].map(|i| mesh.positions[i as usize]),
-        };
-        corners.map(|corner| self.projection.view(corner))
+        let corners = shell.deepest(mesh, triangle, self.scene.camera.eye);
+        Some(corners.map(|corner| self.projection.view(corner)))
     }
 
-    fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32> {
+    /// See [`Follow::probe`](crate::raster::Follow::probe).
+    pub(super) fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32> {
         let met = self.walk::<true>(triangle, place);
         if let Met::Relief(hit) = met { Some(hit.distance as f32) } else { None }
     }
 
-    fn follow(&self, triangle: [u32; 2], place: [f64; 2]) -> Behind {
+    /// What the ray through a place of the screen meets behind a triangle.
+    pub(super) fn follow(&self, triangle: [u32; 2], place: [f64; 2]) -> Behind {
         match self.met(triangle, place) {
             Met::Relief(hit) => Behind::Surface(hit.distance as f32),
             Met::Nothing(distance) => Behind::Nothing(distance as f32),

@@ -3,7 +3,7 @@
 use super::outlines::Outlines;
 use crate::geometry::Projection;
 use crate::raster::{Behind, Follow};
-use crate::scene::{CutOut, Mesh, Scene};
+use crate::scene::{Mesh, Scene};
 use crate::shell::is_seen_from_behind;
 use glam::{DVec2, DVec3, Vec3};
 
@@ -23,19 +23,19 @@ impl<'a> Passages<'a> {
         outlines: Option<&'a Outlines<'a>>,
     ) -> Option<Self> {
         let all = Self { scene, projection, outlines };
-        let has_holes = scene.meshes.iter().any(|mesh| all.cut_out(mesh).is_some());
+        let has_holes = scene.meshes.iter().any(|mesh| scene.cut_out(mesh).is_some());
         (outlines.is_some() || has_holes).then_some(all)
     }
 
-    fn cut_out(&self, mesh: &Mesh) -> Option<&'a CutOut> {
-        let cut_out = self.scene.materials[mesh.material].cut_out.as_ref();
-        cut_out.filter(|_| !mesh.tex_coords.is_empty())
+    /// Whether a mesh has holes.
+    fn is_cut(&self, mesh: u32) -> bool {
+        self.scene.cut_out(&self.scene.meshes[mesh as usize]).is_some()
     }
 
     /// How far along the view the ray through a place of the screen meets a hole of a triangle.
     fn hole(&self, [mesh, triangle]: [u32; 2], pixel: [f64; 2]) -> Option<f64> {
         let mesh = &self.scene.meshes[mesh as usize];
-        let cut_out = self.cut_out(mesh)?;
+        let cut_out = self.scene.cut_out(mesh)?;
         let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
         let at = |place: [f64; 2]| self.on_triangle(mesh, corners, place);
         // Beyond its horizon a plane is nowhere; what is seen of it there is a matter of rounding.
@@ -90,7 +90,7 @@ impl Follow for Passages<'_> {
     }
 
     fn may_be_passed(&self, triangle: [u32; 2]) -> bool {
-        self.cut_out(&self.scene.meshes[triangle[0] as usize]).is_some()
+        self.is_cut(triangle[0])
             || self.outlines.is_some_and(|outlines| outlines.may_be_passed(triangle))
     }
 
@@ -98,19 +98,13 @@ impl Follow for Passages<'_> {
         is_seen_from_behind(&self.scene.meshes[mesh as usize], triangle, self.scene.camera.eye)
     }
 
-    fn deepest(&self, triangle: [u32; 2]) -> [Vec3; 3] {
-        let mesh = &self.scene.meshes[triangle[0] as usize];
-        match self.outlines {
-            Some(outlines) => outlines.deepest(triangle),
-            None => mesh.triangles[triangle[1] as usize]
-                .map(|i| self.projection.view(mesh.positions[i as usize])),
-        }
+    fn deepest(&self, triangle: [u32; 2]) -> Option<[Vec3; 3]> {
+        self.outlines?.deepest(triangle)
     }
 
     fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32> {
         // Following finds holes once and for all.
-        let is_cut = self.cut_out(&self.scene.meshes[triangle[0] as usize]).is_some();
-        self.outlines.filter(|_| !is_cut)?.probe(triangle, place)
+        self.outlines.filter(|_| !self.is_cut(triangle[0]))?.probe(triangle, place)
     }
 
     fn follow(&self, triangle: [u32; 2], place: [f64; 2]) -> Behind {

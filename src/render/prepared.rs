@@ -226,10 +226,8 @@ impl PreparedScene {
             let Some((_, baked)) = &self.baked else { return Vec::new() };
             let triangles = self.occluders(scene).triangles();
             let ceiling = |light: &Light| {
-                let Light::Sun { to_light, angular_size, .. } = *light else { return None };
-                let disc = Disc::new(to_light.normalize_or_zero(), angular_size);
                 Some(Ceiling::new(
-                    disc,
+                    Disc::of(light)?,
                     triangles.iter(),
                     baked.curved(scene).flat_map(|mesh| mesh.positions.iter().copied()),
                 ))

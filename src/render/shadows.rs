@@ -119,8 +119,7 @@ fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<
         .lights
         .iter()
         .filter_map(|light| {
-            let Light::Sun { to_light, angular_size, .. } = *light else { return None };
-            let disc = Disc::new(to_light.normalize_or_zero(), angular_size);
+            let disc = Disc::of(light)?;
             let triangles = occluders.between(receiver, &disc);
             Some(Hidden::new(&disc, triangles))
         })

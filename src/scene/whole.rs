@@ -1,6 +1,7 @@
 //! All that is drawn, checked as a whole.
 
 use super::camera::Camera;
+use super::cut_out::CutOut;
 use super::light::{self, Light};
 use super::material::Material;
 use super::mesh::Mesh;
@@ -27,6 +28,13 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The holes of a mesh, if it has any.
+    pub(crate) fn cut_out(&self, mesh: &Mesh) -> Option<&CutOut> {
+        let cut_out = self.materials[mesh.material].cut_out.as_ref();
+        // Where they are the texture coordinates say.
+        cut_out.filter(|_| !mesh.tex_coords.is_empty())
+    }
+
     /// Checks indices, array lengths and that every number is within its range.
     ///
     /// # Errors

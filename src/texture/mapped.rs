@@ -1,6 +1,6 @@
 //! A texture of a size of its own: for numbers of a material that its surface's texels do not hold.
 
-use super::wrap::{Wrap, near_origin};
+use super::wrap::{Wrap, near_origin, wrap_index};
 use super::{ColorImage, GrayImage, box_taps};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
@@ -168,16 +168,12 @@ impl Texture {
 
     /// The texel of a place in an endless row of period `n`.
     fn fold(&self, i: i32, n: usize) -> usize {
-        let n = n as i32;
-        let folded = match self.wrap {
-            Wrap::Repeat => i.rem_euclid(n),
-            Wrap::Clamp => i.clamp(0, n - 1),
-            Wrap::Mirror => {
-                let i = i.rem_euclid(2 * n);
-                i.min(2 * n - 1 - i)
-            }
-        };
-        folded as usize
+        if self.wrap == Wrap::Mirror {
+            // Stored once, and not with its mirror image.
+            let i = wrap_index(Wrap::Mirror, i, 2 * n);
+            return i.min(2 * n - 1 - i);
+        }
+        wrap_index(self.wrap, i, n)
     }
 }
 

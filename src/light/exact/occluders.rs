@@ -50,12 +50,10 @@ impl Occluders {
     /// Of all meshes of a scene.
     pub fn new(scene: &Scene) -> Self {
         let triangles = scene.meshes.iter().flat_map(|mesh| {
-            let cut_out = scene.materials[mesh.material].cut_out.as_ref();
-            match cut_out.filter(|_| !mesh.tex_coords.is_empty()) {
+            let whole = || mesh.triangles.iter().map(|t| t.map(|i| mesh.positions[i as usize]));
+            match scene.cut_out(mesh) {
                 Some(cut_out) => holes::without(mesh, cut_out),
-                None => {
-                    mesh.triangles.iter().map(|t| t.map(|i| mesh.positions[i as usize])).collect()
-                }
+                None => whole().collect(),
             }
         });
         let mut occluders = Self { nodes: Vec::new(), triangles: triangles.collect() };
