@@ -98,11 +98,10 @@ impl Footprints {
         Self { base: *uv, hit: none, dx: none, dy: none, displacement, covered }
     }
 
-    /// The pixels, before their hits, over a surface that is curved: `bend` is how much `gamma` of the
-    /// view rays grows per repeat along u and v.
-    pub fn bent(self, view: &[PixelLanes; 3], bend: &Uv, field: &HeightField) -> Self {
-        let farther = bent(&self.displacement, view, bend, field.relief_depth);
-        Self { displacement: self.displacement.map(|d| d * farther), ..self }
+    /// The pixels, before their hits, over a surface that is curved: see [`bent`] for `bend`.
+    pub fn bent(self, view: &[PixelLanes; 3], bend: &[Uv; 3], field: &HeightField) -> Self {
+        let displacement = bent(&self.displacement, view, bend, field.relief_depth);
+        Self { displacement, ..self }
     }
 
     /// Makes pixels [before their hits](Self::before_hits) what [`Self::of_quads`] makes: the more

@@ -103,7 +103,7 @@ impl<'a> PlaneMaker<'a> {
                 if is_textured { [0, 1].map(|i| one(&uv[i], lane)) } else { [Plane::default(); 2] };
             // Straight down, unless a view is found below.
             planes.view = [Plane::default(), Plane::default(), planes.inverse_w];
-            planes.bend = [0.0; 2];
+            planes.bend = [[0.0; 2]; 3];
         }
         // One lane with relief is reason enough to find all eight; flat ones keep what they have.
         if corners.iter().any(|corners| self.needs_view(corners)) {
@@ -114,11 +114,11 @@ impl<'a> PlaneMaker<'a> {
             let view = [0, 1, 2].map(|axis| basis.plane(views.map(|view| view[axis])));
             let planes =
                 planes.iter_mut().enumerate().filter(|(lane, _)| self.needs_view(&corners[*lane]));
-            let bend = bends(&normals, &tex_coords, &views.map(|view| view[2]));
+            let bend = bends(&normals, &tangents, &tex_coords, &views);
             planes.for_each(|(lane, planes)| {
                 planes.view = [0, 1, 2].map(|i| one(&view[i], lane));
                 if self.has_outlines {
-                    planes.bend = bend.map(|lanes| lanes.as_array()[lane] as f32);
+                    planes.bend = bend.map(|of| of.map(|lanes| lanes.as_array()[lane] as f32));
                 }
             });
         }
@@ -228,22 +228,56 @@ fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vect
     std::array::from_fn(|i| is_frame.select(solved[i], straight[i]))
 }
 
-/// How much a number at the corners grows per repeat along u and along v; 0 where the normals there
-/// are equal, or the texture has no area.
-fn bends(normals: &[Vectors; 3], tex_coords: &[Vectors; 3], corners: &[f64x8; 3]) -> [f64x8; 2] {
-    let edge = |i: usize| {
-        let [u, v] = [0, 1].map(|axis| tex_coords[i][axis] - tex_coords[0][axis]);
-        (u, v, corners[i] - corners[0])
-    };
-    let ((u1, v1, c1), (u2, v2, c2)) = (edge(1), edge(2));
+/// [`AttributePlanes::bend`] of eight triangles; 0 where the normals at the corners are equal, or the
+/// texture has no area.
+fn bends(
+    normals: &[Vectors; 3],
+    tangents: &[[Vectors; 3]; 2],
+    tex_coords: &[Vectors; 3],
+    views: &[Vectors; 3],
+) -> [[f64x8; 2]; 3] {
+    let edge = |i: usize| [0, 1].map(|axis| tex_coords[i][axis] - tex_coords[0][axis]);
+    let ([u1, v1], [u2, v2]) = (edge(1), edge(2));
     let area = u1 * v2 - u2 * v1;
+    // By how much a number at the corners grows per repeat along u and along v.
+    let growth = |corners: [f64x8; 3]| {
+        let (c1, c2) = (corners[1] - corners[0], corners[2] - corners[0]);
+        [(c1 * v2 - c2 * v1) / area, (c2 * u1 - c1 * u2) / area]
+    };
+    let [alpha, beta, gamma] = [0, 1, 2].map(|axis| growth(views.map(|view| view[axis])));
+    // What a repeat of the surface loses when it goes down one: its offsets, in the first corner's
+    // frame, grow by that.
+    let offset = |i: usize| {
+        let across = cross(tangents[0][i], tangents[1][i]);
+        let length = dot(across, across).sqrt().sqrt();
+        normals[i].map(|n| n * length)
+    };
+    let frame = [tangents[0][0], tangents[1][0]];
+    let offsets = [0, 1, 2]
+        .map(|i| view_in_texture_frame(difference(offset(i), offset(0)), normals[0], frame));
+    let lost = [0, 1].map(|axis| growth(offsets.map(|offset| offset[axis])));
+    let down = (views[0][2] + views[1][2] + views[2][2]) * (1.0 / 3.0);
+    let turn = |of: [f64x8; 2], axis: usize| {
+        [0, 1].map(|i| {
+            // A ray to a place that is a repeat farther is longer by that.
+            let own = if i == axis { 1.0 } else { 0.0 };
+            (of[i] - own + down * lost[axis][i]) * 0.5
+        })
+    };
+    let bend = [gamma, turn(alpha, 0), turn(beta, 1)];
     let differs = |i: usize| {
-        let turn = [0, 1, 2].map(|axis| normals[i][axis] - normals[0][axis]);
+        let turn = difference(normals[i], normals[0]);
         dot(turn, turn).simd_gt(f64x8::splat(LEAST_TURN))
     };
-    let grown = [(c1 * v2 - c2 * v1) / area, (c2 * u1 - c1 * u2) / area];
-    let is_bent = (differs(1) | differs(2)) & grown[0].is_finite() & grown[1].is_finite();
-    grown.map(|grown| is_bent.select(grown, f64x8::ZERO))
+    let is_bent = bend
+        .iter()
+        .flatten()
+        .fold(differs(1) | differs(2), |is_bent, lanes| is_bent & lanes.is_finite());
+    bend.map(|of| of.map(|lanes| is_bent.select(lanes, f64x8::ZERO)))
+}
+
+fn difference(a: Vectors, b: Vectors) -> Vectors {
+    [0, 1, 2].map(|axis| a[axis] - b[axis])
 }
 
 #[inline(always)]

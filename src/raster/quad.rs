@@ -20,8 +20,11 @@ pub struct AttributePlanes {
     /// dP/du + beta dP/dv - gamma sqrt(|dP/du x dP/dv|) N`. `(0, 0, 1)` over w without texture
     /// coordinates.
     pub view: [Plane; 3],
-    /// How much the ray's gamma grows per repeat along u and along v; 0 where the triangle is flat.
-    pub bend: [f32; 2],
+    /// How a ray's way over the texture changes, per repeat along u and along v that it has moved; 0
+    /// where the triangle is flat. First how much its gamma grows; then half of what moves it on along
+    /// u, and along v, for each alpha and beta: the surface turns away from it, and there is the less
+    /// of it the deeper the ray is.
+    pub bend: [[f32; 2]; 3],
     /// The mesh's colours over w; `None` where it has none.
     pub tint: Option<Box<[Plane; 3]>>,
     /// World-space attributes; only kept under `Lighting::Lit`.
@@ -114,9 +117,10 @@ impl<'a> QuadPair<'a> {
 
     /// [`AttributePlanes::bend`] of the pixels' triangles; `None` where both are flat.
     #[inline(always)]
-    pub fn bend(&self) -> Option<[PixelLanes; 2]> {
-        let [[a, b], [c, d]] = self.planes.map(|planes| planes.bend);
-        ([a, b, c, d] != [0.0; 4]).then(|| [halves(a, c), halves(b, d)])
+    pub fn bend(&self) -> Option<[[PixelLanes; 2]; 3]> {
+        let [a, b] = self.planes.map(|planes| planes.bend);
+        let is_flat = a == [[0.0; 2]; 3] && b == [[0.0; 2]; 3];
+        (!is_flat).then(|| [0, 1, 2].map(|row| [0, 1].map(|i| halves(a[row][i], b[row][i]))))
     }
 
     /// A bit for each lane whose pixel sees the triangle.

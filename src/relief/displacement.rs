@@ -20,32 +20,43 @@ pub fn displacement(view: &[PixelLanes; 3], relief_depth: f32) -> [PixelLanes; 2
     [finite(alpha * stretch), finite(beta * stretch)]
 }
 
-/// By how much farther a view ray moves along a surface that bends away from it than along a flat
-/// one; `bend` is how much `gamma` of the ray grows per repeat along u and along v.
+/// The displacement over a surface that bends: `bend` says how the ray's way changes per repeat along u
+/// and along v that it has moved, by how much its `gamma` grows, and half of what moves it on along u
+/// and along v.
 ///
 /// ```text
 ///   eye o__
 ///          --__
-///   ___-----___--__          at the depth d the ray has moved by u along the surface, whose slope m
-///   polygon     --_ --__     to the ray was gamma / |(alpha, beta)| at the polygon and bends by k:
-///                  --_  --   d = m u - k u^2 / 2, so u = 2 d / (m + sqrt(m^2 - 2 k d))
+///   ___-----___--__          after L lengths of itself the ray w = (alpha, beta) is at the depth d:
+///   polygon     --_ --__     d = gamma L + (bend . w) L^2 / 2, so
+///                  --_  --   L = 2 d / (gamma + sqrt(gamma^2 + 2 d (bend . w))),
+///                            and has moved by u = L w + L^2 turn w
 /// ```
 ///
 /// The displacement is linear in the depth, and so can be right at one: 0.55 of the deepest relief.
 pub fn bent(
-    [du, dv]: &[PixelLanes; 2],
-    [alpha, beta, _]: &[PixelLanes; 3],
-    bend: &[PixelLanes; 2],
+    straight: &[PixelLanes; 2],
+    view: &[PixelLanes; 3],
+    [gamma, along_u, along_v]: &[[PixelLanes; 2]; 3],
     relief_depth: f32,
-) -> PixelLanes {
-    let along = *alpha * *alpha + *beta * *beta;
-    let curvature = (bend[0] * *alpha + bend[1] * *beta) / -along;
-    let squared = *du * *du + *dv * *dv;
-    // In units of m^2, with the displacement S / m. Rays that pass above it bend the most.
-    let left = PixelLanes::ONE - curvature * squared * (2.0 * SEEN_DEPTH / relief_depth);
-    let root = left.fast_max(PixelLanes::ZERO).sqrt();
-    let farther = PixelLanes::splat(2.0) / (root + 1.0);
-    farther.is_finite().select(farther, PixelLanes::ONE)
+) -> [PixelLanes; 2] {
+    let [alpha, beta, _] = *view;
+    let length = stretch(view, relief_depth);
+    // The share of gamma^2 that the bend takes or gives. Rays that pass above it bend the most.
+    let grown = (gamma[0] * alpha + gamma[1] * beta) * length * length;
+    let left = PixelLanes::ONE + grown * (2.0 * SEEN_DEPTH / relief_depth);
+    let farther = PixelLanes::splat(2.0) / (left.fast_max(PixelLanes::ZERO).sqrt() + 1.0);
+    let once = [straight[0] * farther, straight[1] * farther];
+    let twice = length * farther * SEEN_DEPTH;
+    let turned = [along_u, along_v].map(|of| (of[0] * once[0] + of[1] * once[1]) * twice);
+    // Where it would turn it by half of its way, it is not known by so little.
+    let square = |[u, v]: [PixelLanes; 2]| u * u + v * v;
+    let most = (square(once) * 0.25 / square(turned).fast_max(PixelLanes::splat(1e-30))).sqrt();
+    let part = most.fast_min(PixelLanes::ONE);
+    [0, 1].map(|i| {
+        let bent = once[i] + turned[i] * part;
+        bent.is_finite().select(bent, straight[i])
+    })
 }
 
 /// How far the view ray goes on behind the polygon down to the deepest relief, in lengths of its

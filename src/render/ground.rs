@@ -81,8 +81,8 @@ impl Ground<'_> {
         let field = self.prepared.field();
         let rays = Footprints::of_samples((&uv, &view), field, is_traced, pixel, covered);
         match field {
-            Some(field) if planes.bend != [0.0; 2] && !is_traced => {
-                rays.bent(&view, &planes.bend.map(PixelLanes::splat), field)
+            Some(field) if planes.bend != [[0.0; 2]; 3] && !is_traced => {
+                rays.bent(&view, &planes.bend.map(|of| of.map(PixelLanes::splat)), field)
             }
             _ => rays,
         }
