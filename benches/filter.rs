@@ -76,7 +76,7 @@ impl<'a> Filtering<'a> {
     }
 
     fn run(&mut self, pixels: &[Footprints], is_alone: bool) -> Filtered {
-        let batch = Batch { pixels, lights: &[], curved: None, is_alone };
+        let batch = Batch { pixels, is_alone, ..Batch::default() };
         let found = &mut self.found[..pixels.len()];
         self.filter.colors(self.prepared, &batch, &mut self.scratch, found);
         found[0]

@@ -292,12 +292,8 @@ fn a_sweep_takes_a_bounded_number_of_rows() {
     let filter = Filter::Horizon(Horizon { max_anisotropy: 1e6, ..horizon(16) });
     for view in [0.0, 0.002, 3.0, 64.0] {
         let pixel = Footprint::new([0.9, 0.0], [0.0, 0.002], [-15.75, -15.75], [view; 2]);
-        let batch = Batch {
-            pixels: &[Footprints::splat(&pixel)],
-            lights: &[],
-            curved: None,
-            is_alone: true,
-        };
+        let batch =
+            Batch { pixels: &[Footprints::splat(&pixel)], is_alone: true, ..Batch::default() };
         let mut found = [Filtered::default()];
         let num_rows =
             filter.colors(&prepared, &batch, &mut Scratch::default(), &mut found).num_tested;

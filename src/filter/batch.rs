@@ -6,7 +6,7 @@ use crate::simd::PixelLanes;
 use crate::texture::Texel;
 
 /// Pixels of one surface that are filtered together. Neighbours on the screen may share work.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Batch<'a> {
     /// The pixels, eight a vector.
     pub pixels: &'a [Footprints],
@@ -14,6 +14,9 @@ pub struct Batch<'a> {
     pub lights: &'a [LocalLights],
     /// Of a curved surface whose relief hides light from itself, the lights of each vector.
     pub curved: Option<&'a Curved<'a>>,
+    /// Of a surface that bends, how much the displacements of each vector's pixels grow with the depth
+    /// ([`bow`](crate::relief::bow)); else empty. Filters that take rays for straight do not ask.
+    pub bows: &'a [[PixelLanes; 2]],
     /// Whether the horizon sweeps each pixel by itself, and cuts its kernel finely enough for its
     /// weights to be exact to 1e-4. Pictures need not that, and are drawn many times as fast without.
     pub is_alone: bool,

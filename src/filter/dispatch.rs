@@ -147,7 +147,7 @@ impl Prepared {
     pub fn colors(&self, filter: &Filter, footprints: &[Footprint]) -> Vec<[f32; 3]> {
         let pixels: Vec<_> = footprints.chunks(8).map(Footprints::pack).collect();
         let mut filtered = vec![Filtered::default(); pixels.len()];
-        let batch = Batch { pixels: &pixels, lights: &[], curved: None, is_alone: true };
+        let batch = Batch { pixels: &pixels, is_alone: true, ..Batch::default() };
         filter.colors(self, &batch, &mut Scratch::default(), &mut filtered);
         let scale = self.surface().color_scale() / FULL_F32;
         (0..footprints.len())

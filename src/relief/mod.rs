@@ -22,7 +22,7 @@ mod shadow;
 mod walk;
 
 pub use climb::Climb;
-pub use displacement::{MAX_SLOPE, bent, displacement, finite, stretch};
+pub use displacement::{MAX_SLOPE, SEEN_DEPTH, bent, bow, displacement, finite, stretch};
 pub use height_cells::{CellRays, HeightCells};
 pub use height_field::HeightField;
 pub use level_loss::LevelLoss;

@@ -79,7 +79,7 @@ impl Exact<'_> {
             None => ground.rays(planes, ([x, y], num), (pixel, self.is_traced)),
         };
         let mut texels = [Filtered::default()];
-        let batch = Batch { pixels: &[rays], lights: &[], curved: None, is_alone: false };
+        let batch = Batch { pixels: &[rays], ..Batch::default() };
         self.filter.colors(ground.prepared, &batch, scratch, &mut texels);
         let [texels] = texels;
         let point = |lane: usize| {

@@ -103,7 +103,7 @@ impl Shader<'_> {
         scratch: &mut ShadeScratch,
         colors: &mut Vec<[PixelLanes; 3]>,
     ) {
-        let ShadeScratch { filter, footprints, lights, filtered } = scratch;
+        let ShadeScratch { filter, footprints, lights, filtered, .. } = scratch;
         self.footprints((ground.prepared, &self.traits.rule), (block, pairs.clone()), footprints);
         lights.clear();
         self.list_lights((block, pairs.clone()), lights);
@@ -113,7 +113,7 @@ impl Shader<'_> {
             lights.lights.retain(|light| light.is_point);
         }
         filtered.resize(pairs.len(), Filtered::default());
-        let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
+        let batch = Batch { pixels: footprints, lights, ..Batch::default() };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
         colors.extend(filtered.iter().map(|filtered| ground.tinted(&filtered.color)));
     }

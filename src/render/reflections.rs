@@ -53,14 +53,14 @@ impl Shader<'_> {
         scratch: &mut ShadeScratch,
         colors: &mut [[PixelLanes; 3]],
     ) {
-        let ShadeScratch { filter, footprints, lights, filtered } = scratch;
+        let ShadeScratch { filter, footprints, lights, filtered, .. } = scratch;
         let surface = ground.unlit.surface();
         let mips = Filter::Trilinear(Trilinear::default());
         self.footprints((ground.unlit, &mips.traits().rule), (block, pairs.clone()), footprints);
         lights.clear();
         self.list_lights((block, pairs.clone()), lights);
         filtered.resize(pairs.len(), Filtered::default());
-        let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
+        let batch = Batch { pixels: footprints, lights, ..Batch::default() };
         self.count(mips.colors(ground.unlit, &batch, filter, filtered));
         hidden.dim(lights, (block, pairs.clone()));
         ground.occlude(footprints, lights);
@@ -76,8 +76,7 @@ impl Shader<'_> {
                 .map(|(lights, (finish, _))| lights.glossy(finish, &Fresnel::new(finish, mean)));
             let glossy: Vec<_> = glossy.collect();
             self.footprints((gloss, &horizon.traits().rule), (block, pairs), footprints);
-            let batch =
-                Batch { pixels: footprints, lights: &glossy, curved: None, is_alone: false };
+            let batch = Batch { pixels: footprints, lights: &glossy, ..Batch::default() };
             self.count(horizon.colors(gloss, &batch, filter, filtered));
         });
         // With a texture of metal the colours are those of the diffuse layer already.

@@ -7,11 +7,14 @@ use super::hidden_lights::HiddenLights;
 use super::mapped::Glow;
 use super::outlines::Outlines;
 use super::prepared::PreparedScene;
-use crate::filter::{Batch, Filtered, Prepared, SampleOffsets, Samples, Scratch, Traits, Work};
+use crate::filter::{
+    Batch, Filtered, Prepared, Reads, SampleOffsets, Samples, Scratch, Traits, Work,
+};
 use crate::footprint::{FootprintRule, Footprints};
 use crate::light::LocalLights;
 use crate::light::exact::ExactLight;
 use crate::raster::{Pool, QuadBlock, QuadPair};
+use crate::relief::{HeightField, bow, displacement};
 use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
@@ -54,6 +57,7 @@ pub(crate) struct ShadeScratch {
     pub(super) footprints: Vec<Footprints>,
     pub(super) lights: Vec<LocalLights>,
     pub(super) filtered: Vec<Filtered>,
+    bows: Vec<[PixelLanes; 2]>,
 }
 
 impl<'a> Shader<'a> {
@@ -216,7 +220,7 @@ impl<'a> Shader<'a> {
         scratch: &mut ShadeScratch,
         colors: &mut Colors,
     ) {
-        let ShadeScratch { filter, footprints, lights, filtered } = scratch;
+        let ShadeScratch { filter, footprints, lights, filtered, bows } = scratch;
         lights.clear();
         // Find where the pixels lie in the texture.
         let with = (ground.prepared, &self.traits.rule);
@@ -241,7 +245,12 @@ impl<'a> Shader<'a> {
         } else {
             None
         };
-        let batch = Batch { pixels: footprints, lights, curved: curved.as_ref(), is_alone: false };
+        bows.clear();
+        if let (Reads::Seen { .. }, Some(field)) = (self.traits.reads, ground.prepared.field()) {
+            find_bows(field, (block, pairs), bows);
+        }
+        let curved = curved.as_ref();
+        let batch = Batch { pixels: footprints, lights, curved, bows, is_alone: false };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
         if ground.asks_for_lights() {
             // Light the means; the lights come in the order in which they were listed.
@@ -303,10 +312,10 @@ impl<'a> Shader<'a> {
         let (mut sums, mut nums) = ([Vec3::ZERO; 8], [0.0; 8]);
         for groups in samples.groups.chunks(GROUPS_AT_ONCE) {
             self.cast(ground, pair, groups, scratch);
-            let ShadeScratch { filter, footprints, lights, filtered } = &mut *scratch;
+            let ShadeScratch { filter, footprints, lights, filtered, .. } = &mut *scratch;
             ground.occlude(footprints, lights);
             filtered.resize(footprints.len(), Filtered::default());
-            let batch = Batch { pixels: footprints, lights, curved: None, is_alone: false };
+            let batch = Batch { pixels: footprints, lights, ..Batch::default() };
             self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
             // Sum up what the samples see, one by one in their order, so that the bits are always
             // equal.
@@ -372,6 +381,23 @@ impl<'a> Shader<'a> {
     pub(super) fn count(&self, work: Work) {
         self.num_texels[0].fetch_add(work.num_tested, Ordering::Relaxed);
         self.num_texels[1].fetch_add(work.num_averaged, Ordering::Relaxed);
+    }
+}
+
+/// How much the displacements of pairs of a block grow with the depth; nothing where none does.
+fn find_bows(
+    field: &HeightField,
+    (block, pairs): (&QuadBlock, Range<usize>),
+    bows: &mut Vec<[PixelLanes; 2]>,
+) {
+    let of_pair = |index: usize| {
+        let pair = block.pair(index);
+        let (view, bend) = (pair.view(), pair.bend()?);
+        let straight = displacement(&view, field.relief_depth);
+        Some(bow(&straight, &view, &bend, field.relief_depth))
+    };
+    if pairs.clone().any(|index| block.pair(index).bend().is_some()) {
+        bows.extend(pairs.map(|index| of_pair(index).unwrap_or_default()));
     }
 }
 

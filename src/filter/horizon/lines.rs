@@ -12,6 +12,7 @@
 use super::grid::Grid;
 use super::sweep_frame::SweepFrame;
 use super::walk::Texels;
+use crate::relief::SEEN_DEPTH;
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, halves, i32x16, join, line_indices};
 use crate::texture::{FULL_F32, Rows, unpack_normals};
 
@@ -74,26 +75,29 @@ pub(super) struct Lines<'a, const HALVES: bool, const LIT: bool> {
     seen: SeenAt,
 }
 
-/// Where heights are seen, `p = (q - d D) / (1 + d c)` in bins from the grid's first, with the depth
-/// `d = 1 - h`: `(scale q - constant + h slope) / (whole - h part)`.
+/// Where heights are seen, `p = (q - d D - d (d - s) B) / (1 + d c)` in bins from the grid's first, with
+/// the depth `d = 1 - h`, the bow `B` and the depth `s` for which displacements are right:
+/// `(scale q - constant + h (slope - h square)) / (whole - h part)`.
 struct SeenAt {
     scale: f32,
     constant: LineLanes,
     slope: LineLanes,
+    square: f32,
     whole: f32,
     part: f32,
 }
 
 impl SeenAt {
     fn new(grid: &Grid, xi: LineLanes) -> Self {
-        let SweepFrame { tilt, depth, growth, .. } = *grid.frame;
+        let SweepFrame { tilt, depth, growth, bow, .. } = *grid.frame;
         let (scale, unit) = (grid.inverse_step, 1.0 / (FULL_F32 * BETWEEN_SCALE));
         let depth = (xi * tilt + depth) * scale;
-        let begin = grid.begin * scale;
+        let (begin, bow) = (grid.begin * scale, bow * scale);
         Self {
             scale,
-            constant: depth + begin * (1.0 + growth),
-            slope: (depth + begin * growth) * unit,
+            constant: depth + (begin * (1.0 + growth) + bow * (1.0 - SEEN_DEPTH)),
+            slope: (depth + (begin * growth + bow * (2.0 - SEEN_DEPTH))) * unit,
+            square: bow * (unit * unit),
             whole: 1.0 + growth,
             part: growth * unit,
         }
@@ -101,7 +105,8 @@ impl SeenAt {
 
     #[inline(always)]
     fn place(&self, q: f32, height: LineLanes) -> LineLanes {
-        (LineLanes::splat(q * self.scale) - self.constant + height * self.slope)
+        let slope = self.slope - height * self.square;
+        (LineLanes::splat(q * self.scale) - self.constant + height * slope)
             / (LineLanes::splat(self.whole) - height * self.part)
     }
 }
@@ -114,7 +119,8 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         let frame = grid.frame;
         let others = line_indices() * grid.spacing;
         let xi = first as f32 * grid.spacing + grid.first;
-        let depths = (others + xi) * frame.tilt + frame.depth;
+        let deepest = frame.depth + frame.bow.max(0.0) * (1.0 - SEEN_DEPTH);
+        let depths = (others + xi) * frame.tilt + deepest;
         Self {
             grid,
             frame,

@@ -98,6 +98,7 @@ pub(super) fn colors(
         let patches = Patches {
             is_alone: batch.is_alone,
             light,
+            bows: batch.bows.get(NUM_VECTORS * i..).unwrap_or_default(),
             least_bias: usize::from(batch.is_lit() || is_curved || prepared.is_lit()),
             ..patches(prepared, (pixels, base), horizon, num_bins, batch.is_lit())
         };
@@ -221,6 +222,7 @@ fn patches<'a>(
         surface,
         loss,
         light: None,
+        bows: &[],
         pixels,
         base,
         horizon,

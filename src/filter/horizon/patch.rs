@@ -9,7 +9,7 @@ use super::kernel::Totals;
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::plan::{Extent, Plan, WIDEST, in_whole_groups};
-use super::sweep_frame::{SweepFrame, means};
+use super::sweep_frame::{SweepFrame, mean_bow, means};
 use crate::filter::points;
 use crate::footprint::levels::{SweepExtent, for_sweep};
 use crate::footprint::{Ellipses, Footprints};
@@ -70,6 +70,8 @@ pub(super) struct Patches<'a> {
     pub(super) light: Option<(&'a Curved<'a>, &'a Horizons)>,
     /// The pixels, eight a vector.
     pub(super) pixels: &'a [Footprints],
+    /// How their displacements bow; empty where none does.
+    pub(super) bows: &'a [[PixelLanes; 2]],
     /// Their ellipses in texels of the base level.
     pub(super) base: &'a [Ellipses],
     pub(super) horizon: &'a Horizon,
@@ -132,7 +134,7 @@ impl<'a> Patches<'a> {
         // Picks ascend: only these vectors hold any.
         let first_vector = usize::from(picks[0] / 8);
         let vectors = first_vector..=usize::from(picks[picks.len() - 1] / 8);
-        let (pixels, base) = (&self.pixels[vectors.clone()], &self.base[vectors]);
+        let (pixels, base) = (&self.pixels[vectors.clone()], &self.base[vectors.clone()]);
         masks(picks, first_vector, pixels.len(), picked);
         let middle = means(pixels, picked, picks.len());
         let level = self.choose_level(base, picked, picks.len(), middle[1])?;
@@ -153,6 +155,8 @@ impl<'a> Patches<'a> {
         let [a, c] =
             [ellipses[0].a, ellipses[0].c].map(|lanes| lanes.as_array()[usize::from(picks[0] % 8)]);
         let frame = SweepFrame::new(self.surface, level, middle, a < c);
+        let bow = mean_bow(self.bows.get(vectors).unwrap_or_default(), picked, picks.len());
+        let frame = frame.bowed(bow);
         // A lone pixel's displacement is the frame's own: there is no growth to fit.
         let frame = if picks.len() > 1 { frame.fit(pixels, ellipses, picked)? } else { frame };
         // Put the pixels on them.

@@ -40,6 +40,9 @@ const MOST_MISFIT: f32 = 0.25;
 /// Least and greatest distance between lines over that in the middle of the patch.
 const SPREAD: [f32; 2] = [0.6, 1.6];
 
+/// Most that a displacement may bow, forth and back, as shares of it.
+const MOST_BOW: [f32; 2] = [0.6, 1.5];
+
 /// Greatest growth `c`.
 const MOST_GROWTH: f32 = 0.5;
 
@@ -64,6 +67,8 @@ pub(super) struct SweepFrame<'a> {
     pub(super) depth: f32,
     pub(super) growth: f32,
     pub(super) tilt: f32,
+    /// How much that grows with the depth for which it is right.
+    pub(super) bow: f32,
     /// Mean depth of the surface, 0 to 1.
     mean_depth: f32,
 }
@@ -89,6 +94,14 @@ pub(super) fn means(pixels: &[Footprints], picked: &[PixelLanes], num: usize) ->
     let center =
         [0, 1].map(|i| first[i] + total(pixels, picked, |p| p.base[i] - first[i]) * inverse);
     [center, [0, 1].map(|i| total(pixels, picked, |p| p.displacement[i]) * inverse)]
+}
+
+/// The mean over the picked lanes of bows.
+pub(super) fn mean_bow(bows: &[[PixelLanes; 2]], picked: &[PixelLanes], num: usize) -> [f32; 2] {
+    let sum_of = |axis: usize| {
+        bows.iter().zip(picked).fold(PixelLanes::ZERO, |all, (bow, of)| all + (bow[axis] & *of))
+    };
+    [0, 1].map(|axis| sum(sum_of(axis)) / num as f32)
 }
 
 impl<'a> SweepFrame<'a> {
@@ -124,12 +137,20 @@ impl<'a> SweepFrame<'a> {
             depth,
             growth: 0.0,
             tilt: 0.0,
+            bow: 0.0,
             mean_depth: surface.mean_depth(),
         }
     }
 
     fn turn<T>(&self, [u, v]: [T; 2]) -> [T; 2] {
         if self.is_turned { [v, u] } else { [u, v] }
+    }
+
+    /// Gives it the mean bow, in repeats, of displacements. What bows across them is left out.
+    pub(super) fn bowed(self, bow: [f32; 2]) -> Self {
+        let bow = self.turn(bow)[1] * self.texels[1] * self.toward;
+        // Displacements must grow from the polygon down to the deepest relief.
+        Self { bow: bow.clamp(-MOST_BOW[0] * self.depth, MOST_BOW[1] * self.depth), ..self }
     }
 
     /// Place and displacement of pixels in this frame: along the rows and in the walking direction,
