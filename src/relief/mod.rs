@@ -7,6 +7,7 @@
 //! depth `S`; and the *hit* `q = b + t D` with the depth `t`, 0 to 1, at which the ray from the
 //! base coordinate `b` first meets the relief. Lanes are pixels.
 
+mod bent;
 mod climb;
 pub mod directions;
 mod displacement;
@@ -21,8 +22,9 @@ mod segment;
 mod shadow;
 mod walk;
 
+pub use bent::{SEEN_DEPTH, bent, bow};
 pub use climb::Climb;
-pub use displacement::{MAX_SLOPE, SEEN_DEPTH, bent, bow, displacement, finite, stretch};
+pub use displacement::{MAX_SLOPE, displacement, finite, stretch};
 pub use height_cells::{CellRays, HeightCells};
 pub use height_field::HeightField;
 pub use level_loss::LevelLoss;

@@ -8,6 +8,7 @@
 //! 4. `raster` adds the colours up to pixels.
 
 mod baked;
+mod bows;
 mod curved;
 mod curved_lights;
 mod curved_shadows;

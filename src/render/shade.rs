@@ -1,5 +1,6 @@
 //! The colours of a block of quads: footprints, filter, light.
 
+use super::bows::find_bows;
 use super::curved_lights::CurvedLights;
 use super::exact::Exact;
 use super::ground::{Ground, in_lanes, of_hits, pixel_center};
@@ -14,7 +15,6 @@ use crate::footprint::{FootprintRule, Footprints};
 use crate::light::LocalLights;
 use crate::light::exact::ExactLight;
 use crate::raster::{Pool, QuadBlock, QuadPair};
-use crate::relief::{HeightField, bow, displacement};
 use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
@@ -381,23 +381,6 @@ impl<'a> Shader<'a> {
     pub(super) fn count(&self, work: Work) {
         self.num_texels[0].fetch_add(work.num_tested, Ordering::Relaxed);
         self.num_texels[1].fetch_add(work.num_averaged, Ordering::Relaxed);
-    }
-}
-
-/// How much the displacements of pairs of a block grow with the depth; nothing where none does.
-fn find_bows(
-    field: &HeightField,
-    (block, pairs): (&QuadBlock, Range<usize>),
-    bows: &mut Vec<[PixelLanes; 2]>,
-) {
-    let of_pair = |index: usize| {
-        let pair = block.pair(index);
-        let (view, bend) = (pair.view(), pair.bend()?);
-        let straight = displacement(&view, field.relief_depth);
-        Some(bow(&straight, &view, &bend, field.relief_depth))
-    };
-    if pairs.clone().any(|index| block.pair(index).bend().is_some()) {
-        bows.extend(pairs.map(|index| of_pair(index).unwrap_or_default()));
     }
 }
 

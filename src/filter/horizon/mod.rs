@@ -22,6 +22,7 @@
 //! the bins by its own Gaussian (`kernel`). `patch` plans which pixels are swept together,
 //! `sweep_frame` how their lines run. What is far comes from tables (`far_field`).
 
+mod bow;
 mod fit;
 mod grid;
 mod kernel;

@@ -4,12 +4,13 @@
 //! patch cannot hold well are split in two, at last into single pixels. What is planned is then
 //! swept, or only told to who asks for the levels.
 
+use super::bow::mean_bow;
 use super::grid::Profile;
 use super::kernel::Totals;
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::plan::{Extent, Plan, WIDEST, in_whole_groups};
-use super::sweep_frame::{SweepFrame, mean_bow, means};
+use super::sweep_frame::{SweepFrame, means};
 use crate::filter::points;
 use crate::footprint::levels::{SweepExtent, for_sweep};
 use crate::footprint::{Ellipses, Footprints};

@@ -40,9 +40,6 @@ const MOST_MISFIT: f32 = 0.25;
 /// Least and greatest distance between lines over that in the middle of the patch.
 const SPREAD: [f32; 2] = [0.6, 1.6];
 
-/// Most that a displacement may bow, forth and back, as shares of it.
-const MOST_BOW: [f32; 2] = [0.6, 1.5];
-
 /// Greatest growth `c`.
 const MOST_GROWTH: f32 = 0.5;
 
@@ -53,7 +50,7 @@ pub(super) struct SweepFrame<'a> {
     /// Whether rows run along v.
     pub(super) is_turned: bool,
     /// Texels a repeat along the rows and across them.
-    texels: [f32; 2],
+    pub(super) texels: [f32; 2],
     /// The middle in repeats, and near the origin in texels, along the rows and across; texel centres
     /// lie at whole numbers.
     middle: [f32; 2],
@@ -96,14 +93,6 @@ pub(super) fn means(pixels: &[Footprints], picked: &[PixelLanes], num: usize) ->
     [center, [0, 1].map(|i| total(pixels, picked, |p| p.displacement[i]) * inverse)]
 }
 
-/// The mean over the picked lanes of bows.
-pub(super) fn mean_bow(bows: &[[PixelLanes; 2]], picked: &[PixelLanes], num: usize) -> [f32; 2] {
-    let sum_of = |axis: usize| {
-        bows.iter().zip(picked).fold(PixelLanes::ZERO, |all, (bow, of)| all + (bow[axis] & *of))
-    };
-    [0, 1].map(|axis| sum(sum_of(axis)) / num as f32)
-}
-
 impl<'a> SweepFrame<'a> {
     /// The frame on a level around `middle` and `displacement` (means in repeats) of the picked
     /// pixels, without growth.
@@ -142,15 +131,8 @@ impl<'a> SweepFrame<'a> {
         }
     }
 
-    fn turn<T>(&self, [u, v]: [T; 2]) -> [T; 2] {
+    pub(super) fn turn<T>(&self, [u, v]: [T; 2]) -> [T; 2] {
         if self.is_turned { [v, u] } else { [u, v] }
-    }
-
-    /// Gives it the mean bow, in repeats, of displacements. What bows across them is left out.
-    pub(super) fn bowed(self, bow: [f32; 2]) -> Self {
-        let bow = self.turn(bow)[1] * self.texels[1] * self.toward;
-        // Displacements must grow from the polygon down to the deepest relief.
-        Self { bow: bow.clamp(-MOST_BOW[0] * self.depth, MOST_BOW[1] * self.depth), ..self }
     }
 
     /// Place and displacement of pixels in this frame: along the rows and in the walking direction,

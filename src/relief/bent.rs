@@ -1,0 +1,119 @@
+//! View rays over a surface that bends: as filters see them, straight or bowed over the texture.
+
+use super::displacement::stretch;
+use crate::simd::PixelLanes;
+
+/// Depth, 0 to 1, for which bent rays are right: about as deep as relief is seen at an outline. A torus
+/// and a sphere of cobbles at 640x360 have 40.2 and 41.1 dB for 0.3, 41.2 and 41.5 for 0.5, 41.5 and
+/// 40.7 for 0.7, and 38.7 and 39.3 where rays are straight.
+pub const SEEN_DEPTH: f32 = 0.55;
+
+/// Depths that tell how a ray bows: those between which most relief is seen.
+const BOW_DEPTHS: [f32; 2] = [0.3, 0.9];
+
+/// The displacement over a surface that bends: `bend` says how the ray's way changes per repeat along u
+/// and along v that it has moved, by how much its `gamma` grows, and half of what moves it on along u
+/// and along v.
+///
+/// ```text
+///   eye o__
+///          --__
+///   ___-----___--__          after L lengths of itself the ray w = (alpha, beta) is at the depth d:
+///   polygon     --_ --__     d = gamma L + (bend . w) L^2 / 2, so
+///                  --_  --   L = 2 d / (gamma + sqrt(gamma^2 + 2 d (bend . w))),
+///                            and has moved by u = L w + L^2 turn w
+/// ```
+///
+/// A displacement is linear in the depth, and so can be right at one: [`SEEN_DEPTH`].
+pub fn bent(
+    straight: &[PixelLanes; 2],
+    view: &[PixelLanes; 3],
+    bend: &[[PixelLanes; 2]; 3],
+    relief_depth: f32,
+) -> [PixelLanes; 2] {
+    bent_for(SEEN_DEPTH, straight, view, bend, relief_depth)
+}
+
+/// How much a [`bent`] displacement grows with the depth for which it is right: over all of it.
+pub fn bow(
+    straight: &[PixelLanes; 2],
+    view: &[PixelLanes; 3],
+    bend: &[[PixelLanes; 2]; 3],
+    relief_depth: f32,
+) -> [PixelLanes; 2] {
+    let [near, far] = BOW_DEPTHS.map(|depth| bent_for(depth, straight, view, bend, relief_depth));
+    let inverse = 1.0 / (BOW_DEPTHS[1] - BOW_DEPTHS[0]);
+    [0, 1].map(|i| (far[i] - near[i]) * inverse)
+}
+
+/// The displacement that is right for a depth, 0 to 1.
+fn bent_for(
+    depth: f32,
+    straight: &[PixelLanes; 2],
+    view: &[PixelLanes; 3],
+    [gamma, along_u, along_v]: &[[PixelLanes; 2]; 3],
+    relief_depth: f32,
+) -> [PixelLanes; 2] {
+    let [alpha, beta, _] = *view;
+    let length = stretch(view, relief_depth);
+    // The share of gamma^2 that the bend takes or gives. Rays that pass above it bend the most.
+    let grown = (gamma[0] * alpha + gamma[1] * beta) * length * length;
+    let left = PixelLanes::ONE + grown * (2.0 * depth / relief_depth);
+    let farther = PixelLanes::splat(2.0) / (left.fast_max(PixelLanes::ZERO).sqrt() + 1.0);
+    let once = [straight[0] * farther, straight[1] * farther];
+    let twice = length * farther * depth;
+    let turned = [along_u, along_v].map(|of| (of[0] * once[0] + of[1] * once[1]) * twice);
+    // Where it would turn it by half of its way, it is not known by so little.
+    let square = |[u, v]: [PixelLanes; 2]| u * u + v * v;
+    let most = (square(once) * 0.25 / square(turned).fast_max(PixelLanes::splat(1e-30))).sqrt();
+    let part = most.fast_min(PixelLanes::ONE);
+    [0, 1].map(|i| {
+        let bent = once[i] + turned[i] * part;
+        bent.is_finite().select(bent, straight[i])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::relief::displacement;
+
+    /// Rays that come down on a cylinder whose axis is along v, and how far they move around it.
+    #[test]
+    fn rays_go_around_a_cylinder() {
+        let relief_depth = 0.06_f32;
+        for (radius, slope) in [(1.0, 1.0), (1.0, 0.7), (0.7, 1.5), (-1.0, 1.0)] {
+            let (radius, slope): (f64, f64) = (radius, slope);
+            let around = |depth: f64| {
+                // Where x^2 + (R - m x)^2 = (R - d)^2.
+                let (a, b) = (1.0 + slope * slope, radius * slope);
+                let c = 2.0 * radius * depth - depth * depth;
+                let x = (b - radius.signum() * (b * b - a * c).sqrt()) / a;
+                radius * (x / (radius - slope * x)).atan()
+            };
+            let lanes = |numbers: [f64; 3]| numbers.map(|c| PixelLanes::splat(c as f32));
+            let view = lanes([1.0, 0.0, slope]);
+            let grown = lanes([-1.0 / radius, slope / radius, 0.0]);
+            let none = PixelLanes::ZERO;
+            let bend = [[grown[0], none], [grown[1], none], [none; 2]];
+            let straight = displacement(&view, relief_depth);
+            let found = bent(&straight, &view, &bend, relief_depth)[0].to_array()[0];
+            let bow = bow(&straight, &view, &bend, relief_depth)[0].to_array()[0];
+            let straight = f64::from(straight[0].to_array()[0]);
+            for depth in [0.2, 0.55, 0.9] {
+                let exact = around(depth * f64::from(relief_depth)) / depth;
+                let bowed = f64::from(found + bow * (depth as f32 - SEEN_DEPTH));
+                let (bowed, flat) = ((bowed - exact).abs(), (straight - exact).abs());
+                assert!(bowed < 0.2 * flat, "{radius} {slope} {depth}: {bowed} of {flat}");
+            }
+        }
+    }
+
+    #[test]
+    fn flat_surfaces_leave_rays_straight() {
+        let view = [0.3, -0.7, 0.2].map(PixelLanes::splat);
+        let (straight, bend) = (displacement(&view, 0.05), [[PixelLanes::ZERO; 2]; 3]);
+        assert_eq!(bent(&straight, &view, &bend, 0.05), straight);
+        assert_eq!(bow(&straight, &view, &bend, 0.05), [PixelLanes::ZERO; 2]);
+    }
+}
