@@ -2,7 +2,7 @@
 
 use super::far_field::FarField;
 use crate::footprint::Footprint;
-use crate::light::Horizons;
+use crate::light::{Gloss, Horizons};
 use crate::relief::{HeightCells, HeightField, LevelLoss, displacement, march};
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
@@ -20,6 +20,8 @@ pub struct Prepared {
     has_far_field: bool,
     /// Whether its colours hold light and shadow.
     is_lit: bool,
+    /// The sun whose highlights are asked for, times its colours.
+    gloss: Option<Gloss>,
 }
 
 /// Tables, if a surface has any, for so many MiB.
@@ -46,7 +48,8 @@ impl Prepared {
                 horizons: OnceLock::new(),
             })
         });
-        Self { surface, relief, far: Arc::default(), has_far_field: true, is_lit: false }
+        let (has_far_field, is_lit, gloss) = (true, false, None);
+        Self { surface, relief, far: Arc::default(), has_far_field, is_lit, gloss }
     }
 
     /// The same surface drawn flat.
@@ -57,6 +60,12 @@ impl Prepared {
     /// The same relief in the lit colours of another surface: what is made of heights is shared.
     pub(crate) fn recolored(&self, surface: Surface) -> Self {
         Self { surface: Arc::new(surface), far: Arc::default(), is_lit: true, ..self.clone() }
+    }
+
+    /// The same relief with what it reflects of a sun's light for its colours, of which highlights are
+    /// seen.
+    pub(crate) fn glossy(&self, surface: Surface, gloss: Gloss) -> Self {
+        Self { gloss: Some(gloss), ..self.recolored(surface) }
     }
 
     /// The same surface without tables for distant footprints.
@@ -86,6 +95,11 @@ impl Prepared {
     /// Whether its colours hold light and shadow.
     pub(super) fn is_lit(&self) -> bool {
         self.is_lit
+    }
+
+    /// The sun whose highlights it shows.
+    pub(super) fn gloss(&self) -> Option<&Gloss> {
+        self.gloss.as_ref()
     }
 
     /// The texels.
@@ -125,7 +139,7 @@ impl Prepared {
         }
         // Made without the lock: whoever held it and waited for its tasks could be given one that
         // asks for it. Whoever is last is kept, and all are the same.
-        let made = FarField::new(&self.surface, mib).map(Arc::new);
+        let made = FarField::new(&self.surface, self.gloss, mib).map(Arc::new);
         *self.far.lock().unwrap_or_else(PoisonError::into_inner) = Some((mib, made.clone()));
         made
     }

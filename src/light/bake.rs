@@ -143,7 +143,7 @@ pub fn baked(
 }
 
 /// The surface with what it reflects of light that comes straight for its colours, by the column, row
-/// and albedo of a texel, times the part of each texel that beams reach. Normals stay: what of that gets to the eye
+/// and albedo of a texel, times the part of each texel that a sun's beams reach. Normals stay: what of that gets to the eye
 /// depends on where that is.
 pub fn glossy(
     surface: &Surface,

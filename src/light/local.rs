@@ -19,8 +19,6 @@ pub struct LocalLights {
     pub to_eye: Vec3,
     /// The frame's axes in the world.
     pub axes: [Vec3; 3],
-    /// Where what shines is asked for in place of what is diffuse: the square of `a` of a texel.
-    pub gloss: Option<f32>,
 }
 
 /// A light as one place of a surface sees it.
@@ -63,7 +61,7 @@ impl LocalLights {
         });
         let to_eye = local((eye - point.position).normalize_or_zero());
         let (ambient, lights) = (sky.irradiance(normal), lights.collect());
-        Self { ambient, occlusion: 1.0, lights, to_eye, axes, gloss: None }
+        Self { ambient, occlusion: 1.0, lights, to_eye, axes }
     }
 
     /// Leaves so much of the sky, 0 to 1.
@@ -84,17 +82,13 @@ impl LocalLights {
             .fold(ambient, |sum, light| sum + light.intensity * normal.dot(light.to_light).max(0.0))
     }
 
-    /// The same suns, of each of which highlights hold what a surface reflects that reflects
-    /// `straight` of light that comes straight, as a share of that.
-    pub fn glossy(&self, finish: &Finish, fresnel: &Fresnel) -> Self {
-        let alpha = reflection::alpha(finish.roughness);
-        let lights = self.lights.iter().filter(|light| !light.is_point).map(|light| {
-            let half = (light.to_light + self.to_eye).normalize_or_zero();
-            let straight = fresnel.straight.max(Vec3::splat(1e-6));
-            let share = fresnel.at(half.dot(self.to_eye)) / straight;
-            LocalLight { intensity: light.intensity * share, ..*light }
-        });
-        Self { lights: lights.collect(), gloss: Some(alpha * alpha), ..*self }
+    /// What a pixel shows of a light's highlights that are 1 of light that comes straight, by what
+    /// the surface reflects of that.
+    pub fn shown(&self, light: usize, fresnel: &Fresnel) -> Vec3 {
+        let LocalLight { to_light, intensity, .. } = self.lights[light];
+        let half = (to_light + self.to_eye).normalize_or_zero();
+        let straight = fresnel.straight.max(Vec3::splat(1e-6));
+        intensity * (fresnel.at(half.dot(self.to_eye)) / straight)
     }
 
     /// What a material of base colour `base` does with the light under a mean normal; of suns'

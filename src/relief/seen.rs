@@ -13,7 +13,7 @@
 //! ```
 
 use crate::simd::{Blend, TexelLanes, high_half, lane_columns, low_half};
-use crate::texture::{FULL_F32, Rows, Surface, Wrap, wrap_index};
+use crate::texture::{FULL_F32, Rows, Surface, Wrap, unpack_normals, wrap_index};
 
 /// Least length of a segment, in texels, that a place in it is divided by.
 const LEAST_SEGMENT: f32 = 1e-6;
@@ -22,10 +22,12 @@ const LEAST_SEGMENT: f32 = 1e-6;
 pub type SeenImage = Vec<[f32; 3]>;
 
 /// What is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Seen {
+#[derive(Clone, Copy)]
+pub enum Seen<'a> {
     /// Linear colours, 0 to 1 of the surface's scale.
     Colors,
+    /// The same times what texels with such normals show, 0 or more.
+    Shining(&'a (dyn Fn([TexelLanes; 3]) -> TexelLanes + Sync)),
     /// Heights, 0 to 1, three times each.
     Heights,
 }
@@ -43,7 +45,7 @@ pub struct View {
 /// most the level's.
 pub fn seen_image(
     surface: &Surface,
-    seen: Seen,
+    seen: Seen<'_>,
     level: usize,
     size: [usize; 2],
     view: View,
@@ -100,7 +102,7 @@ pub fn square_difference(a: &[[f32; 3]], b: &[[f32; 3]]) -> f32 {
 /// A sweep over one whole level: rows along y, lines as lanes.
 struct Sweep<'a> {
     rows: &'a Rows,
-    seen: Seen,
+    seen: Seen<'a>,
     toward: f32,
     depth: f32,
     shear: f32,
@@ -121,7 +123,7 @@ struct Row {
 
 impl<'a> Sweep<'a> {
     fn new(
-        (rows, seen): (&'a Rows, Seen),
+        (rows, seen): (&'a Rows, Seen<'a>),
         [dx, dy]: [f32; 2],
         plane: f32,
         size: [usize; 2],
@@ -170,15 +172,27 @@ impl<'a> Sweep<'a> {
         let left = x.floor();
         let start = self.rows.run_start(left as i32);
         let blend = Blend::new(TexelLanes::splat(x - left));
-        let pick = |plane: usize| {
+        let both = |plane: usize| {
             let start = start + plane * self.rows.stride();
-            blend.mix([Rows::run(words, start), Rows::run(words, start + 1)])
+            [Rows::run(words, start), Rows::run(words, start + 1)]
         };
+        let pick = |plane: usize| blend.mix(both(plane));
         let (red_green, blue_height) = (pick(0), pick(1));
         let height = high_half(blue_height);
         let depth = TexelLanes::ONE - height * (1.0 / FULL_F32);
+        let colors = || [low_half(red_green), high_half(red_green), low_half(blue_height)];
         let values = match self.seen {
-            Seen::Colors => [low_half(red_green), high_half(red_green), low_half(blue_height)],
+            Seen::Colors => colors(),
+            Seen::Shining(shown) => {
+                let normal = if self.rows.has_normals() {
+                    let [near, far] = both(2).map(unpack_normals);
+                    [0, 1, 2].map(|i| near[i] + (far[i] - near[i]) * (x - left))
+                } else {
+                    [TexelLanes::ZERO, TexelLanes::ZERO, TexelLanes::ONE]
+                };
+                let shown = shown(normal);
+                colors().map(|color| color * shown)
+            }
             Seen::Heights => [height; 3],
         };
         Row { place: TexelLanes::splat(i as f32) - depth * self.depth, values }

@@ -11,7 +11,7 @@ use super::open_sky::{Facing, OpenSky, Plane};
 use crate::filter::Prepared;
 use crate::light::exact::Occluders;
 use crate::light::reflection::Fresnel;
-use crate::light::{TextureFrame, baked, glossy};
+use crate::light::{Gloss, TextureFrame, baked, glossy};
 use crate::scene::{Finish, Light, Material, Mesh, Scene, Sky};
 use glam::Vec3;
 
@@ -68,7 +68,7 @@ struct Side {
     apart: Vec<Prepared>,
     open_sky: Option<OpenSky>,
     /// See [`LitPiece::gloss`].
-    gloss: Option<Prepared>,
+    gloss: Vec<(usize, Prepared)>,
 }
 
 impl Baked {
@@ -182,10 +182,7 @@ impl Baked {
     pub(crate) fn of_group(&self, group: usize) -> Option<(&Prepared, LitPiece<'_>)> {
         let Side { normal, lit, apart, open_sky, gloss } =
             self.pieces[group / 2].sides[group % 2].as_ref()?;
-        Some((
-            lit,
-            LitPiece { normal: *normal, apart, open_sky: open_sky.as_ref(), gloss: gloss.as_ref() },
-        ))
+        Some((lit, LitPiece { normal: *normal, apart, open_sky: open_sky.as_ref(), gloss }))
     }
 
     /// A triangle's piece, and which side the camera sees: 0 for the front.
@@ -233,12 +230,18 @@ impl Piece {
             }
             open_sky = self.open_sky(side, (scene, occluders()), unlit);
         }
-        let suns = frame.beams(&scene.lights, &Sky::default());
-        let gloss = (!material.is_matte() && !suns.is_empty()).then(|| {
-            let base = |albedo: [f32; 3]| Vec3::from(albedo) * material.base_color;
-            let straight = |x, y, albedo| Fresnel::new(&finish(x, y), base(albedo)).straight;
-            unlit.recolored(glossy(unlit.surface(), &suns, straight))
-        });
+        let base = |albedo: [f32; 3]| Vec3::from(albedo) * material.base_color;
+        let straight = |x, y, albedo| Fresnel::new(&finish(x, y), base(albedo)).straight;
+        let of_sun = |(i, light): (usize, &Light)| {
+            let Light::Sun { to_light, .. } = *light else { return None };
+            let beams = frame.beams(std::slice::from_ref(light), &Sky::default());
+            let surface = unlit.surface();
+            let gloss = Gloss::new(&frame, to_light, material.roughness, surface.relief_depth());
+            let is_up = !beams.is_empty();
+            is_up.then(|| (i, unlit.glossy(glossy(surface, &beams, straight), gloss)))
+        };
+        let lights = scene.lights.iter().enumerate().filter(|_| !material.is_matte());
+        let gloss = lights.filter_map(of_sun).collect();
         Side { normal, lit: lit(&scene.lights, &scene.sky), apart, open_sky, gloss }
     }
 

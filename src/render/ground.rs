@@ -49,8 +49,9 @@ pub(crate) struct LitPiece<'a> {
     pub(crate) normal: Vec3,
     /// Under the sky alone, and under each sun alone; nothing where no mesh can hide a sun from it.
     pub(crate) apart: &'a [Prepared],
-    /// What suns show of a glossy surface that the horizon's highlights are made of.
-    pub(crate) gloss: Option<&'a Prepared>,
+    /// Of a glossy surface, what the horizon's highlights of each sun are made of, by the sun's
+    /// number among the lights.
+    pub(crate) gloss: &'a [(usize, Prepared)],
     /// What meshes leave of the sky, where they hide any of it.
     pub(crate) open_sky: Option<&'a OpenSky>,
 }

@@ -13,12 +13,15 @@
 use super::ground::{Ground, in_lanes};
 use super::hidden_lights::HiddenLights;
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
-use crate::filter::{Batch, Filtered, Prepared};
-use crate::light::reflection::Fresnel;
+use crate::filter::{Batch, Filtered, Scratch};
+use crate::footprint::Footprints;
+use crate::light::reflection::{Fresnel, alpha};
+use crate::light::{LocalLights, Shine};
 use crate::raster::QuadBlock;
+use crate::scene::Finish;
 use crate::settings::{Filter, Trilinear};
 use crate::simd::PixelLanes;
-use crate::texture::FULL_F32;
+use crate::texture::{FULL_F32, Texel};
 use glam::Vec3;
 use std::ops::Range;
 
@@ -68,34 +71,21 @@ impl Shader<'_> {
             pixels.covered().map(|lane| (pixels.lane(lane), filtered.lane(lane)))
         });
         let places: Vec<_> = places.map(|(pixel, texel)| (ground.finish(&pixel), texel)).collect();
-        let gloss = self.gloss(ground).inspect(|(gloss, horizon)| {
-            let mean = mean_base(ground);
-            let glossy = lights
-                .iter()
-                .zip(&places)
-                .map(|(lights, (finish, _))| lights.glossy(finish, &Fresnel::new(finish, mean)));
-            let glossy: Vec<_> = glossy.collect();
-            self.footprints((gloss, &horizon.traits().rule), (block, pairs), footprints);
-            let batch = Batch { pixels: footprints, lights: &glossy, ..Batch::default() };
-            self.count(horizon.colors(gloss, &batch, filter, filtered));
-        });
+        let highlights =
+            self.highlights(ground, (block, pairs), (lights, &places), (filter, footprints));
         // With a texture of metal the colours are those of the diffuse layer already.
         let has_layer = ground.material.maps.metallic.is_some();
         let dielectric = if has_layer { 1.0 } else { 1.0 - ground.material.metallic };
         // The lights come in the order in which they were listed.
-        let mut each = lights.iter().zip(places);
-        for (color, (pixels, filtered)) in colors.iter_mut().zip(footprints.iter().zip(&*filtered))
-        {
+        let mut each = lights.iter().zip(places).enumerate();
+        for (color, pixels) in colors.iter_mut().zip(&*footprints) {
             let mut lit = [Vec3::ZERO; 8];
             let diffuse = color.map(|channel| channel.to_array());
-            for (lane, (lights, (finish, texel))) in pixels.covered().zip(&mut each) {
-                let seen = filtered.lane(lane);
+            for (lane, (i, (lights, (finish, texel)))) in pixels.covered().zip(&mut each) {
                 let base = ground.color_of(surface, &texel);
-                let highlights = gloss.map(|(gloss, _)| {
-                    Vec3::from(seen.color) * (gloss.surface().color_scale() / FULL_F32)
-                });
-                let normal = seen.normal.into();
-                let on_top = self.reflected((&finish, base), normal, lights, highlights);
+                let highlights = highlights.as_ref().map(|all| all[i]);
+                let on_top =
+                    self.reflected((&finish, base), texel.normal.into(), lights, highlights);
                 let diffuse = Vec3::from(diffuse.map(|channel| channel[lane]));
                 lit[lane] = diffuse * (on_top.passed * dielectric) + on_top.added;
             }
@@ -103,11 +93,43 @@ impl Shader<'_> {
         }
     }
 
-    /// What highlights are made of, where it is the horizon that draws.
-    fn gloss<'a>(&self, ground: &Ground<'a>) -> Option<(&'a Prepared, &Filter)> {
+    /// The suns' highlights of the covered pixels of some pairs, where it is the horizon that draws.
+    fn highlights(
+        &self,
+        ground: &Ground,
+        (block, pairs): (&QuadBlock, Range<usize>),
+        (lights, places): (&[LocalLights], &[(Finish, Texel)]),
+        (scratch, footprints): (&mut Scratch, &mut Vec<Footprints>),
+    ) -> Option<Vec<Vec3>> {
         let filter = &self.settings.filter;
-        let gloss = ground.baked?.gloss?;
-        matches!(filter, Filter::Horizon(_)).then_some((gloss, filter))
+        let gloss = ground.baked?.gloss;
+        if gloss.is_empty() || !matches!(filter, Filter::Horizon(_)) {
+            return None;
+        }
+        let mean = mean_base(ground);
+        let shine = |(lights, (finish, _)): (&LocalLights, &(Finish, Texel))| {
+            let alpha = alpha(finish.roughness);
+            Shine { to_eye: lights.to_eye, alpha_squared: alpha * alpha }
+        };
+        let shines: Vec<_> = lights.iter().zip(places).map(shine).collect();
+        let mut sums = vec![Vec3::ZERO; lights.len()];
+        let mut found = vec![Filtered::default(); pairs.len()];
+        for (light, gloss) in gloss {
+            let rule = &filter.traits().rule;
+            self.footprints((gloss, rule), (block, pairs.clone()), footprints);
+            let batch = Batch { pixels: footprints, shines: &shines, ..Batch::default() };
+            self.count(filter.colors(gloss, &batch, scratch, &mut found));
+            let scale = gloss.surface().color_scale() / FULL_F32;
+            let seen = footprints.iter().zip(&found);
+            let seen = seen.flat_map(|(pixels, found)| pixels.covered().map(|i| found.lane(i)));
+            for (((sum, seen), lights), (finish, _)) in
+                sums.iter_mut().zip(seen).zip(lights).zip(places)
+            {
+                let shown = lights.shown(*light, &Fresnel::new(finish, mean));
+                *sum += Vec3::from(seen.color) * scale * shown;
+            }
+        }
+        Some(sums)
     }
 }
 

@@ -250,7 +250,7 @@ impl<'a> Shader<'a> {
             find_bows(field, (block, pairs), bows);
         }
         let curved = curved.as_ref();
-        let batch = Batch { pixels: footprints, lights, curved, bows, is_alone: false };
+        let batch = Batch { pixels: footprints, lights, curved, bows, ..Batch::default() };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
         if ground.asks_for_lights() {
             // Light the means; the lights come in the order in which they were listed.

@@ -34,6 +34,53 @@ pub type TexelLanes = f32x8;
 /// A value of sixteen neighbouring lines of a sweep.
 pub type LineLanes = f32x16;
 
+/// Numbers in lanes, for what is computed in eight of them and in sixteen.
+pub trait Lanes:
+    Copy
+    + std::ops::Add<Output = Self>
+    + std::ops::Sub<Output = Self>
+    + std::ops::Mul<Output = Self>
+    + std::ops::Div<Output = Self>
+{
+    /// The same number in all lanes.
+    fn splat(number: f32) -> Self;
+    /// Square roots.
+    fn sqrt(self) -> Self;
+    /// Those numbers that are above a bound, and the bound.
+    fn at_least(self, bound: f32) -> Self;
+    /// Those numbers that are below a bound, and the bound.
+    fn at_most(self, bound: f32) -> Self;
+}
+
+macro_rules! lanes {
+    ($lanes:ty) => {
+        impl Lanes for $lanes {
+            #[inline(always)]
+            fn splat(number: f32) -> Self {
+                <$lanes>::splat(number)
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                <$lanes>::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn at_least(self, bound: f32) -> Self {
+                self.fast_max(<$lanes>::splat(bound))
+            }
+
+            #[inline(always)]
+            fn at_most(self, bound: f32) -> Self {
+                self.fast_min(<$lanes>::splat(bound))
+            }
+        }
+    };
+}
+
+lanes!(f32x8);
+lanes!(f32x16);
+
 /// The sum of the lanes, in one fixed order on every machine.
 pub fn sum(lanes: f32x8) -> f32 {
     let [a, b, c, d, e, f, g, h] = lanes.to_array();

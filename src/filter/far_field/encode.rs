@@ -10,6 +10,8 @@ pub(super) const RUN: usize = 8;
 #[derive(Clone, Debug)]
 pub(super) struct FarImage {
     levels: Vec<FarLevel>,
+    /// What its greatest number stands for, of the surface's scale.
+    pub(super) scale: f32,
 }
 
 /// One of its levels.
@@ -26,15 +28,15 @@ impl FarImage {
         (width + RUN) * height
     }
 
-    /// An image and its coarser levels from linear colours (0 to 1 of the surface's scale), row by
+    /// An image and its coarser levels from linear colours (0 to `scale` of the surface's), row by
     /// row.
-    pub(super) fn new(size: [usize; 2], colors: Vec<[f32; 3]>) -> Self {
+    pub(super) fn new(size: [usize; 2], colors: Vec<[f32; 3]>, scale: f32) -> Self {
         let (mut size, mut colors) = (size, colors);
         let mut levels = Vec::new();
         loop {
-            levels.push(FarLevel::new(size, &colors));
+            levels.push(FarLevel::new(size, &colors, 1.0 / scale));
             if size == [1, 1] {
-                return Self { levels };
+                return Self { levels, scale };
             }
             (size, colors) = halve(size, &colors);
         }
@@ -47,8 +49,10 @@ impl FarImage {
 }
 
 impl FarLevel {
-    fn new([width, height]: [usize; 2], colors: &[[f32; 3]]) -> Self {
-        let row = |y: usize| (0..width + RUN).map(move |x| encode(colors[y * width + x % width]));
+    fn new([width, height]: [usize; 2], colors: &[[f32; 3]], unit: f32) -> Self {
+        let texel =
+            move |x: usize, y: usize| encode(colors[y * width + x % width].map(|c| c * unit));
+        let row = |y: usize| (0..width + RUN).map(move |x| texel(x, y));
         Self { width, height, words: (0..height).flat_map(row).collect() }
     }
 

@@ -61,7 +61,10 @@ impl FarField {
         let place = surface.levels()[index].in_texels(place).map(|c| c - 0.5);
         let nearest = self.neighbours(surface.base().in_texels(displacement));
         let level = index - self.first_level;
-        let images = nearest.map(|(image, share)| (self.image(surface, image).level(level), share));
+        let images = nearest.map(|(image, share)| {
+            let image = self.image(surface, image);
+            (image.level(level), share * image.scale)
+        });
         let color = average(&images, &ellipse, place);
         Texel { color: std::array::from_fn(|i| color[i] * UNITS[i] * FULL_F32), normal: Texel::UP }
     }

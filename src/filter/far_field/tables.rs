@@ -1,10 +1,12 @@
 //! The tables of one surface: for which directions there are any, and how they are built.
 
 use super::encode::FarImage;
+use crate::light::{Gloss, lobes};
 use crate::relief::directions::{
     Lengths, NUM_LENGTHS, SLOPES, diamond_angle, pseudo_exp, pseudo_log,
 };
 use crate::relief::seen::{Seen, View, seen_depth, seen_image, square_difference};
+use crate::simd::TexelLanes;
 use crate::texture::{Surface, Wrap};
 use rayon::prelude::*;
 use std::sync::OnceLock;
@@ -57,6 +59,8 @@ pub(in crate::filter) struct FarField {
     pub(super) plane: f32,
     /// The mip level that tables are built from.
     source: usize,
+    /// Whose highlights they hold.
+    gloss: Option<Gloss>,
     /// By length, then azimuth: the longer the displacement, the more azimuths. Each is built when
     /// it is first asked for, since a frame asks for few of them.
     images: Vec<OnceLock<FarImage>>,
@@ -64,8 +68,13 @@ pub(in crate::filter) struct FarField {
 
 impl FarField {
     /// The tables within so many MiB, none of them built yet; `None` for a surface without relief, with edges that
-    /// do not repeat, or too small to need tables.
-    pub(in crate::filter) fn new(surface: &Surface, mib: u32) -> Option<Self> {
+    /// do not repeat, or too small to need tables. With `gloss` they hold its highlights, as the eye of
+    /// each direction sees them.
+    pub(in crate::filter) fn new(
+        surface: &Surface,
+        gloss: Option<Gloss>,
+        mib: u32,
+    ) -> Option<Self> {
         let num_texels = |level: &usize| surface.levels()[*level].size().iter().product::<usize>();
         let first_level =
             (0..surface.levels().len()).find(|level| num_texels(level) <= MOST_TEXELS)?;
@@ -79,9 +88,11 @@ impl FarField {
             starts: table_starts(surface, first_level, mib),
             plane: grazing_depth(surface, first_level, &lengths),
             source: 0,
+            gloss,
             images: Vec::new(),
         };
-        far.source = far.source_level(surface);
+        // A level's mean normals would show other highlights.
+        far.source = if gloss.is_some() { 0 } else { far.source_level(surface) };
         far.images.resize_with(far.starts[NUM_LENGTHS], OnceLock::new);
         Some(far)
     }
@@ -93,7 +104,18 @@ impl FarField {
             let length = self.starts.partition_point(|start| *start <= index) - 1;
             let view = self.view(self.displacement(length, index - self.starts[length]));
             let size = surface.levels()[self.first_level].size();
-            FarImage::new(size, seen_image(surface, Seen::Colors, self.source, size, view))
+            let Some(gloss) = self.gloss else {
+                let seen = seen_image(surface, Seen::Colors, self.source, size, view);
+                return FarImage::new(size, seen, 1.0);
+            };
+            let texels = surface.base().texels_per_repeat();
+            let [du, dv] = view.displacement;
+            let to_eye = gloss.to_eye([du / texels[0], dv / texels[1]]);
+            let shown = shown(&gloss, to_eye.to_array());
+            let seen = seen_image(surface, Seen::Shining(&shown), self.source, size, view);
+            // Highlights are as bright as a surface is smooth.
+            let brightest = seen.iter().flatten().fold(f32::MIN_POSITIVE, |a, b| a.max(*b));
+            FarImage::new(size, seen, brightest)
         })
     }
 
@@ -152,6 +174,13 @@ impl FarField {
         let (left, part) = (azimuth as usize % num, azimuth - azimuth.floor());
         [(self.starts[length] + left, 1.0 - part), (self.starts[length] + (left + 1) % num, part)]
     }
+}
+
+/// What a texel shows to an eye in a direction, by its normal.
+fn shown(gloss: &Gloss, to_eye: [f32; 3]) -> impl Fn([TexelLanes; 3]) -> TexelLanes + Sync {
+    let directions = [gloss.to_light.to_array(), to_eye].map(|d| d.map(TexelLanes::splat));
+    let alpha_squared = TexelLanes::splat(gloss.alpha_squared);
+    move |normal| lobes(normal, directions, alpha_squared)
 }
 
 /// The mean depth of what is seen at a grazing view.

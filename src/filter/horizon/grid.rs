@@ -7,6 +7,7 @@
 //!   bin 0   | mean | mean |         begins at the seen place `begin`
 //! ```
 
+use super::glossy::PatchGloss;
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::sweep_frame::SweepFrame;
@@ -47,8 +48,19 @@ pub(super) struct Grid<'a> {
     pub(super) num_bins: usize,
     /// Whether lines are read half way between rows, too.
     pub(super) has_halves: bool,
-    /// What shines on texels, where a curved surface is lit.
-    pub(super) light: Option<&'a PatchLight<'a>>,
+    /// What texels are multiplied with as they are swept.
+    pub(super) shown: Shown<'a>,
+}
+
+/// What texels are multiplied with as they are swept.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Shown<'a> {
+    /// Nothing.
+    Colors,
+    /// What shines on them, where a curved surface is lit.
+    Light(&'a PatchLight<'a>),
+    /// Their highlights of a sun.
+    Gloss(&'a PatchGloss),
 }
 
 /// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then

@@ -2,7 +2,6 @@
 
 use super::grid::{GROUP, Grid, MOST_LINES, Profile, Row, load};
 use super::pixels::PixelOnLines;
-use crate::light::reflection::LEAST_COSINE;
 use crate::light::{LocalLight, LocalLights};
 use crate::simd::{BETWEEN_SCALE, LineLanes, exp_negative, join, line_indices, split, sums};
 use crate::texture::Texel;
@@ -91,10 +90,7 @@ impl Totals {
             if let (Some(lights), true) = (lights, CHANNELS > 3) {
                 // Light what is seen before it is averaged: the mean is of products.
                 let normal = [3, 4, 5].map(|i| load(&bin[i.min(CHANNELS - 1)], line));
-                let light = match lights.gloss {
-                    Some(alpha_squared) => highlights(lights, &normal, alpha_squared),
-                    None => diffuse(lights, &normal),
-                };
+                let light = diffuse(lights, &normal);
                 (0..3).for_each(|i| all[i] += load(&bin[i], line) * light[i] * visible);
                 (3..CHANNELS).for_each(|i| all[i] += normal[i - 3] * visible);
             } else {
@@ -138,29 +134,6 @@ fn diffuse(lights: &LocalLights, normal: &[LineLanes; 3]) -> [LineLanes; 3] {
         let Vec3 { x, y, z } = *to_light;
         let cosine = (normal[0] * x + normal[1] * y + normal[2] * z).fast_max(LineLanes::ZERO);
         (0..3).for_each(|i| sums[i] += cosine * intensity[i]);
-    }
-    sums
-}
-
-/// The lobes of lights around sixteen mean normals, each widened by how much shorter than one it is;
-/// see [`lobe`](crate::light::reflection::lobe).
-fn highlights(lights: &LocalLights, normal: &[LineLanes; 3], alpha_squared: f32) -> [LineLanes; 3] {
-    let along = |v: Vec3| normal[0] * v.x + normal[1] * v.y + normal[2] * v.z;
-    let square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-    let length = square.sqrt().fast_max(LineLanes::splat(1e-3)).fast_min(LineLanes::ONE);
-    let inverse = LineLanes::ONE / length;
-    let a = ((inverse - 1.0) * 2.0 + alpha_squared).fast_min(LineLanes::ONE);
-    let n_v = (along(lights.to_eye) * inverse).fast_max(LineLanes::splat(LEAST_COSINE));
-    let masked = |x: LineLanes, y: LineLanes| x * (y * y * (LineLanes::ONE - a) + a).sqrt();
-    let mut sums = [LineLanes::ZERO; 3];
-    for LocalLight { to_light, intensity, .. } in &lights.lights {
-        let half = (*to_light + lights.to_eye).normalize_or_zero();
-        let n_l = (along(*to_light) * inverse).fast_max(LineLanes::ZERO);
-        let n_h = along(half) * inverse;
-        let t = n_h * n_h * (a - 1.0) + 1.0;
-        let d = a / (t * t).fast_max(LineLanes::splat(1e-14));
-        let lobe = d * n_l / (masked(n_l, n_v) + masked(n_v, n_l)) * 0.5;
-        (0..3).for_each(|i| sums[i] += lobe * intensity[i]);
     }
     sums
 }

@@ -9,7 +9,8 @@
 //!        the run     `- offset of the first line; the others follow at equal distances
 //! ```
 
-use super::grid::Grid;
+use super::glossy::PatchGloss;
+use super::grid::{Grid, Shown};
 use super::sweep_frame::SweepFrame;
 use super::walk::Texels;
 use crate::relief::SEEN_DEPTH;
@@ -187,7 +188,7 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
             for i in 0..Self::STEPS as usize {
                 steps.starts[i][first..first + 16].copy_from_slice(&starts(rows, i));
             }
-            if let (true, Some(light)) = (LIT, self.grid.light) {
+            if let (true, Shown::Light(light)) = (LIT, self.grid.shown) {
                 steps.horizons[first..first + 16].copy_from_slice(&starts(light.rows, 0));
             }
         }
@@ -220,19 +221,49 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         let between = self.between(steps, i);
         let [near, far] = &steps.starts;
         let place = steps.places[i];
+        if let (true, Shown::Gloss(gloss)) = (LIT, self.grid.shown) {
+            let mut values = [LineLanes::ZERO; CHANNELS];
+            values[..3].copy_from_slice(&self.highlights(gloss, steps, i, &between));
+            return Texels { values, place };
+        }
         let (mut values, mut height) = self.values(near[i], &between);
         if HALVES && near[i] != far[i] {
             let (others, far_height) = self.values::<CHANNELS>(far[i], &between);
             (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
             height = (height + far_height) * 0.5;
         }
-        if let (true, Some(light)) = (LIT, self.grid.light) {
+        if let (true, Shown::Light(light)) = (LIT, self.grid.shown) {
             let p = place * self.grid.step + self.grid.begin;
             let at = [self.others + self.xi, p, height];
             let shown = light.at(steps.horizons[i], &between, at);
             (0..3).for_each(|c| values[c] *= shown[c]);
         }
         Texels { values, place }
+    }
+
+    /// What the texels of a step show of a sun.
+    #[inline(never)]
+    fn highlights(
+        &self,
+        gloss: &PatchGloss,
+        steps: &Steps,
+        i: usize,
+        between: &Between,
+    ) -> [LineLanes; 3] {
+        let [near, far] = &steps.starts;
+        let ([r, g, b, x, y, z], _) = self.values::<6>(near[i], between);
+        let (mut color, mut normal) = ([r, g, b], [x, y, z]);
+        if HALVES && near[i] != far[i] {
+            let ([r, g, b, x, y, z], _) = self.values::<6>(far[i], between);
+            let others = ([r, g, b], [x, y, z]);
+            for c in 0..3 {
+                color[c] = (color[c] + others.0[c]) * 0.5;
+                normal[c] = (normal[c] + others.1[c]) * 0.5;
+            }
+        }
+        let p = steps.places[i] * self.grid.step + self.grid.begin;
+        let shown = gloss.at(normal, [self.others + self.xi, p]);
+        color.map(|color| color * shown)
     }
 
     /// The values where lines cross a row, and their heights: colours and heights in units of

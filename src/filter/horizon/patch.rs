@@ -5,7 +5,8 @@
 //! swept, or only told to who asks for the levels.
 
 use super::bow::mean_bow;
-use super::grid::Profile;
+use super::glossy::PatchGloss;
+use super::grid::{Profile, Shown};
 use super::kernel::Totals;
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
@@ -14,7 +15,7 @@ use super::sweep_frame::{SweepFrame, means};
 use crate::filter::points;
 use crate::footprint::levels::{SweepExtent, for_sweep};
 use crate::footprint::{Ellipses, Footprints};
-use crate::light::{Curved, Horizons, LocalLights};
+use crate::light::{Curved, Gloss, Horizons, LocalLights, Shine};
 use crate::relief::LevelLoss;
 use crate::settings::Horizon;
 use crate::simd::{PixelLanes, bits_mask};
@@ -60,6 +61,28 @@ pub(super) struct PatchScratch {
     totals: Vec<Totals>,
 }
 
+/// Pixels that are asked for. A pick is a pixel's vector times 8 plus its lane; picks ascend.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Picks<'a> {
+    pub(super) picks: &'a [u8],
+    /// One for each, where they are lit bin by bin.
+    pub(super) lights: &'a [LocalLights],
+    /// One for each, where highlights are asked for.
+    pub(super) shines: &'a [Shine],
+}
+
+impl Picks<'_> {
+    /// Those before a number of them, and the others.
+    fn split_at(&self, middle: usize) -> [Self; 2] {
+        fn halves<T>(all: &[T], middle: usize) -> [&[T]; 2] {
+            all.split_at(if all.is_empty() { 0 } else { middle }).into()
+        }
+        let (picks, lights) = (halves(self.picks, middle), halves(self.lights, middle));
+        let shines = halves(self.shines, middle);
+        [0, 1].map(|i| Self { picks: picks[i], lights: lights[i], shines: shines[i] })
+    }
+}
+
 /// Up to [`MOST_PIXELS`] pixels of one surface that may share sweeps. A pick is a pixel's vector
 /// times 8 plus its lane; picks ascend.
 #[derive(Clone, Copy, Debug)]
@@ -69,6 +92,8 @@ pub(super) struct Patches<'a> {
     pub(super) loss: Option<&'a LevelLoss>,
     /// The lights of the pixels and what hides them, where a curved surface is lit.
     pub(super) light: Option<(&'a Curved<'a>, &'a Horizons)>,
+    /// The sun whose highlights are asked for.
+    pub(super) gloss: Option<&'a Gloss>,
     /// The pixels, eight a vector.
     pub(super) pixels: &'a [Footprints],
     /// How their displacements bow; empty where none does.
@@ -86,27 +111,25 @@ pub(super) struct Patches<'a> {
 }
 
 impl<'a> Patches<'a> {
-    /// The means of the picked pixels into `found`. With `lights`, one a pick, they hold diffuse
-    /// light. Returns the number of rows swept, sixteen lines each.
+    /// The means of the picked pixels into `found`. With lights they hold diffuse light. Returns the
+    /// number of rows swept, sixteen lines each.
     pub(super) fn means(
         &self,
-        picks: &[u8],
-        lights: &[LocalLights],
+        asked: Picks,
         scratch: &mut PatchScratch,
         found: &mut [Texel],
     ) -> u64 {
-        if picks.is_empty() {
+        if asked.picks.is_empty() {
             return 0;
         }
-        if let Some(plan) = self.plan_together(picks, scratch) {
-            return self.sweep(&plan, (picks, lights), scratch, found);
+        if let Some(plan) = self.plan_together(asked.picks, scratch) {
+            return self.sweep(&plan, asked, scratch, found);
         }
         // Halve what does not fit: at the end stand single pixels, which always do.
-        let middle = picks.len() / 2;
-        let (near_lights, far_lights) = lights.split_at(if lights.is_empty() { 0 } else { middle });
+        let middle = asked.picks.len() / 2;
+        let [before, after] = asked.split_at(middle);
         let (near, far) = found.split_at_mut(middle);
-        self.means(&picks[..middle], near_lights, scratch, near)
-            + self.means(&picks[middle..], far_lights, scratch, far)
+        self.means(before, scratch, near) + self.means(after, scratch, far)
     }
 
     /// The mip levels that [`Self::means`] sweeps the picked pixels on, one after the other.
@@ -198,7 +221,7 @@ impl<'a> Patches<'a> {
     fn sweep(
         &self,
         plan: &Plan,
-        (picks, lights): (&[u8], &[LocalLights]),
+        Picks { picks, lights, shines }: Picks,
         scratch: &mut PatchScratch,
         found: &mut [Texel],
     ) -> u64 {
@@ -206,13 +229,16 @@ impl<'a> Patches<'a> {
         totals.clear();
         totals.resize(picks.len(), Totals::default());
         let num_rows = if self.is_lit {
-            plan.run::<6, false>(lit, pixels, (lights, None), totals)
+            plan.run::<6, false>(lit, pixels, (lights, Shown::Colors), totals)
         } else if let Some((curved, horizons)) = self.light {
             let rows = horizons.rows(plan.level, plan.frame.is_turned);
             let light = PatchLight::new(curved, rows, picks, pixels);
-            plan.run::<3, true>(unlit, pixels, (&[], Some(&light)), totals)
+            plan.run::<3, true>(unlit, pixels, (&[], Shown::Light(&light)), totals)
+        } else if let Some(gloss) = self.gloss {
+            let gloss = PatchGloss::new(gloss, shines, pixels, plan.level);
+            plan.run::<3, true>(unlit, pixels, (&[], Shown::Gloss(&gloss)), totals)
         } else {
-            plan.run::<3, false>(unlit, pixels, (&[], None), totals)
+            plan.run::<3, false>(unlit, pixels, (&[], Shown::Colors), totals)
         };
         for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
             // Where no line meets the ellipse, the texels around the base place stand for it.

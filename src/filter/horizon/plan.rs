@@ -1,8 +1,7 @@
 //! A planned patch: where its ellipses lie, how its lines are set, and the sweep over them.
 
-use super::grid::{GROUP, Grid, MOST_LINES, Profile};
+use super::grid::{GROUP, Grid, MOST_LINES, Profile, Shown};
 use super::kernel::Totals;
-use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::sweep_frame::SweepFrame;
 use crate::light::LocalLights;
@@ -84,7 +83,7 @@ impl Plan<'_> {
         &self,
         profile: &mut Profile<CHANNELS>,
         pixels: &[PixelOnLines],
-        (lights, light): (&[LocalLights], Option<&PatchLight>),
+        (lights, shown): (&[LocalLights], Shown),
         totals: &mut [Totals],
     ) -> u64 {
         let Extent { xi, q, .. } = self.extent;
@@ -111,7 +110,7 @@ impl Plan<'_> {
                 inverse_step: 1.0 / self.step,
                 num_bins,
                 has_halves,
-                light,
+                shown,
             };
             for (group, range) in grid.ranges(pixels).into_iter().enumerate() {
                 if range[0] < range[1] {

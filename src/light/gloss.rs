@@ -1,0 +1,124 @@
+//! Highlights of a sun, texel by texel.
+//!
+//! A rough surface shows of a sun what the lobe around each seen normal holds. The sun lies in one
+//! direction over a flat piece of a surface, and the eye in nearly one over a few pixels, or over
+//! all that a table of the far field stands for. So the lobe is taken of each texel where it is
+//! swept, and what is averaged is highlights, not normals.
+
+use super::bake::TextureFrame;
+use super::reflection::{LEAST_COSINE, alpha};
+use super::surface_point::unit_axes;
+use crate::simd::Lanes;
+use glam::Vec3;
+
+/// Least square of a half vector's length: of an eye and a light that lie opposite each other.
+const LEAST_HALF: f32 = 1e-12;
+
+/// A sun over a flat piece of a rough surface, in the frame of its texture: x along u, y along v,
+/// z off the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Gloss {
+    /// Unit direction to the sun.
+    pub to_light: Vec3,
+    /// `a^2` of the roughness that tables are made for.
+    pub alpha_squared: f32,
+    /// How far a view goes for each repeat along u and along v that it moves while it goes down one.
+    along: [Vec3; 2],
+    /// And how far it goes down.
+    down: f32,
+    relief_depth: f32,
+}
+
+/// How a pixel sees highlights.
+#[derive(Clone, Copy, Debug)]
+pub struct Shine {
+    /// Unit direction to the eye in the frame of the texture.
+    pub to_eye: Vec3,
+    /// `a^2` of its roughness.
+    pub alpha_squared: f32,
+}
+
+impl Gloss {
+    /// Of a sun in a direction of any length; `relief_depth` is in repeats.
+    pub fn new(frame: &TextureFrame, to_sun: Vec3, roughness: f32, relief_depth: f32) -> Self {
+        let axes = unit_axes(frame.tangents, frame.normal);
+        let local = |w: Vec3| Vec3::from(axes.map(|axis| axis.dot(w)));
+        let [u, v] = frame.tangents;
+        let a = alpha(roughness);
+        Self {
+            to_light: local(to_sun.normalize_or_zero()),
+            alpha_squared: a * a,
+            along: [u, v].map(local),
+            down: u.cross(v).length().sqrt(),
+            relief_depth,
+        }
+    }
+
+    /// The unit direction to the eye of a view that moves so many repeats down to the deepest
+    /// relief.
+    pub fn to_eye(&self, displacement: [f32; 2]) -> Vec3 {
+        let [u, v] = displacement.map(|d| d / self.relief_depth);
+        (Vec3::Z * self.down - self.along[0] * u - self.along[1] * v).normalize_or(Vec3::Z)
+    }
+}
+
+/// `pi D V n.l` as [`lobe`](super::reflection::lobe), of normals in lanes, of any length above 0,
+/// and an `a^2` up to 1. A normal that faces away from the eye shows as
+/// if the eye stood just above its plane, as in the truth.
+#[inline(always)]
+pub fn lobes<L: Lanes>(normal: [L; 3], [to_light, to_eye]: [[L; 3]; 2], a: L) -> L {
+    let dot = |a: [L; 3], b: [L; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let one = L::splat(1.0);
+    let inverse = one / dot(normal, normal).at_least(1e-6).sqrt();
+    let n_l = dot(normal, to_light) * inverse;
+    let n_v = dot(normal, to_eye) * inverse;
+    let l_v = dot(to_light, to_eye);
+    // The eye, moved along the normal by what it lacks: its cosines are divided by its length.
+    let lacks = (L::splat(LEAST_COSINE) - n_v).at_least(0.0);
+    let length = one / (one + lacks * (n_v + n_v + lacks)).sqrt();
+    let n_v = (n_v + lacks) * length;
+    let l_v = (l_v + lacks * n_l) * length;
+    let n_h = (n_l + n_v) / (one + one + l_v + l_v).at_least(LEAST_HALF).sqrt();
+    let n_l = n_l.at_least(0.0);
+    let t = n_h * n_h * (a - one) + one;
+    let d = a / (t * t).at_least(1e-14);
+    let masked = |x: L, y: L| x * (y * y * (one - a) + a).sqrt();
+    d * n_l * L::splat(0.5) / (masked(n_l, n_v) + masked(n_v, n_l)).at_least(1e-14)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::reflection::lobe;
+    use crate::simd::PixelLanes;
+
+    #[test]
+    fn lobes_in_lanes_are_those_of_single_normals() {
+        let splat = |v: Vec3| v.to_array().map(PixelLanes::splat);
+        for i in 0..200 {
+            let at = |k: i32| ((i * k % 37) as f32 - 18.0) / 18.0;
+            let normal = Vec3::new(at(5), at(7), 0.6);
+            let to_light = Vec3::new(at(11), at(3), 0.8).normalize();
+            let to_eye = Vec3::new(at(13), at(17), 0.7).normalize();
+            let a = 0.01 + 0.9 * (i as f32 / 200.0);
+            let n = normal.normalize();
+            let lacks = (LEAST_COSINE - n.dot(to_eye)).max(0.0);
+            let seen_by = (to_eye + n * lacks).normalize();
+            let half = (to_light + seen_by).normalize();
+            let alone = lobe(a, n.dot(seen_by), n.dot(to_light), n.dot(half));
+            let found = lobes(splat(normal), [to_light, to_eye].map(splat), PixelLanes::splat(a));
+            let found = found.to_array()[3];
+            assert!((found - alone).abs() <= 2e-3 * alone + 1e-4, "{found} {alone}");
+        }
+    }
+
+    #[test]
+    fn the_eye_lies_against_the_view() {
+        let tangents = [Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 0.0, -2.0)];
+        let frame = TextureFrame { tangents, normal: Vec3::Y };
+        let gloss = Gloss::new(&frame, Vec3::Y, 0.5, 0.05);
+        // One repeat along u, two world units, for each repeat down.
+        let to_eye = gloss.to_eye([0.05, 0.0]);
+        assert!(to_eye.distance(Vec3::new(-1.0, 0.0, 1.0).normalize()) < 1e-6, "{to_eye}");
+    }
+}
