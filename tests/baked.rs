@@ -133,6 +133,24 @@ fn baked_light_is_the_truths() {
     }
 }
 
+/// Tops and sides of stones shine apart, near by and at the skyline, in each other's shadow.
+#[test]
+fn highlights_are_the_truths() {
+    let sun = sun(Vec3::new(-0.3, 0.5, -1.0), Vec3::splat(0.4));
+    for (metallic, roughness, least) in [(1.0, 0.6, 30.0), (0.0, 0.45, 29.0)] {
+        let mut scene = floor(cobbles(256, 6), std::slice::from_ref(&sun), Vec3::ZERO);
+        let material = &mut scene.materials[0];
+        (material.metallic, material.specular, material.roughness) = (metallic, 1.0, roughness);
+        let [frame, truth] = [Filter::default(), Filter::Truth(Rays { samples: 256 })]
+            .map(|filter| draw(&scene, filter));
+        let found = decibels(&frame, &truth);
+        let far = |frame: &Frame| seen(frame).take(6 * 64).flatten().sum::<f32>();
+        let share = far(&frame) / far(&truth);
+        println!("metal {metallic}: {found} dB, {share} of the truth's light at the skyline");
+        assert!(found > least && (0.95..1.05).contains(&share), "{found} dB, {share}");
+    }
+}
+
 /// Adds a plate over the floor, edge on to the eye, so that it hides little of the picture.
 fn add_plate(scene: &mut Scene) {
     let corners = [[-1.5, 3.5], [1.5, 3.5], [1.5, 1.5], [-1.5, 1.5]];

@@ -1,9 +1,10 @@
 //! What goes into a filter and what comes out of it.
 
 use crate::footprint::Footprints;
-use crate::light::{Curved, LocalLights, Shine};
+use crate::light::{Curved, LocalLights};
 use crate::simd::PixelLanes;
 use crate::texture::Texel;
+use glam::Vec3;
 
 /// Pixels of one surface that are filtered together. Neighbours on the screen may share work.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,9 +18,9 @@ pub struct Batch<'a> {
     /// Of a surface that bends, how much the displacements of each vector's pixels grow with the depth
     /// ([`bow`](crate::relief::bow)); else empty. Filters that take rays for straight do not ask.
     pub bows: &'a [[PixelLanes; 2]],
-    /// Where a surface's [gloss](super::Prepared::glossy) is asked for, how each covered pixel sees
-    /// it, in order; else empty.
-    pub shines: &'a [Shine],
+    /// Of a surface that shows [highlights](super::Prepared::glossy), the unit direction to the eye at
+    /// each covered pixel, in the frame of the texture and in order; else empty.
+    pub to_eyes: &'a [Vec3],
     /// Whether the horizon sweeps each pixel by itself, and cuts its kernel finely enough for its
     /// weights to be exact to 1e-4. Pictures need not that, and are drawn many times as fast without.
     pub is_alone: bool,

@@ -19,7 +19,7 @@ use super::surface_point::unit_axes;
 use crate::relief::{LitParts, MAX_SLOPE, RowScratch};
 use crate::scene::{Light, Sky};
 use crate::simd::TexelLanes;
-use crate::texture::{Level, Surface, unpack_normals};
+use crate::texture::{Level, Normals, Surface, unpack_normals};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -129,12 +129,12 @@ pub fn baked(
 ) -> Surface {
     let Some(shares) = shares else {
         let [along_u, along_v] = summed(surface, &[suns, sky].concat(), true);
-        return surface.with_colors(false, |x, y, albedo| {
+        return surface.with_colors(Normals::Dropped, |x, y, albedo| {
             std::array::from_fn(|c| albedo[c] * (along_u.at(x, y)[c] + along_v.at(y, x)[c]))
         });
     };
     let sums = [suns, sky].map(|beams| summed(surface, beams, true));
-    surface.with_colors(false, |x, y, albedo| {
+    surface.with_colors(Normals::Dropped, |x, y, albedo| {
         let of =
             |[along_u, along_v]: &[Sums; 2], c: usize| along_u.at(x, y)[c] + along_v.at(y, x)[c];
         let [of_suns, of_sky] = shares(x, y);
@@ -143,18 +143,19 @@ pub fn baked(
 }
 
 /// The surface with what it reflects of light that comes straight for its colours, by the column, row
-/// and albedo of a texel, times the part of each texel that a sun's beams reach. Normals stay: what of that gets to the eye
-/// depends on where that is.
-pub fn glossy(
+/// and albedo of a texel, times the part of each texel that a sun's beams reach. Normals stay,
+/// or get a length: what of that gets to the eye depends on where that is.
+pub(crate) fn glossy(
     surface: &Surface,
     beams: &[Beam],
+    normals: Normals,
     straight: impl Fn(usize, usize, [f32; 3]) -> Vec3 + Sync,
 ) -> Surface {
     let all = beams.iter().fold(0.0, |sum, beam| sum + beam.intensity.element_sum());
     let share = |beam: &Beam| Vec3::splat(beam.intensity.element_sum() / all);
     let beams: Vec<_> = beams.iter().map(|b| Beam { intensity: share(b), ..*b }).collect();
     let [along_u, along_v] = summed(surface, &beams, false);
-    surface.with_colors(true, |x, y, albedo| {
+    surface.with_colors(normals, |x, y, albedo| {
         (straight(x, y, albedo) * (along_u.at(x, y)[0] + along_v.at(y, x)[0])).to_array()
     })
 }

@@ -20,8 +20,9 @@ const LEAST_HALF: f32 = 1e-12;
 pub struct Gloss {
     /// Unit direction to the sun.
     pub to_light: Vec3,
-    /// `a^2` of the roughness that tables are made for.
-    pub alpha_squared: f32,
+    /// `a^2` of the roughness; `None` where texels have their own, in the [length](rough_length) of
+    /// their normals.
+    alpha_squared: Option<f32>,
     /// How far a view goes for each repeat along u and along v that it moves while it goes down one.
     along: [Vec3; 2],
     /// And how far it goes down.
@@ -29,25 +30,20 @@ pub struct Gloss {
     relief_depth: f32,
 }
 
-/// How a pixel sees highlights.
-#[derive(Clone, Copy, Debug)]
-pub struct Shine {
-    /// Unit direction to the eye in the frame of the texture.
-    pub to_eye: Vec3,
-    /// `a^2` of its roughness.
-    pub alpha_squared: f32,
-}
-
 impl Gloss {
     /// Of a sun in a direction of any length; `relief_depth` is in repeats.
-    pub fn new(frame: &TextureFrame, to_sun: Vec3, roughness: f32, relief_depth: f32) -> Self {
+    pub fn new(
+        frame: &TextureFrame,
+        to_sun: Vec3,
+        roughness: Option<f32>,
+        relief_depth: f32,
+    ) -> Self {
         let axes = unit_axes(frame.tangents, frame.normal);
         let local = |w: Vec3| Vec3::from(axes.map(|axis| axis.dot(w)));
         let [u, v] = frame.tangents;
-        let a = alpha(roughness);
         Self {
             to_light: local(to_sun.normalize_or_zero()),
-            alpha_squared: a * a,
+            alpha_squared: roughness.map(|roughness| alpha(roughness) * alpha(roughness)),
             along: [u, v].map(local),
             down: u.cross(v).length().sqrt(),
             relief_depth,
@@ -60,13 +56,38 @@ impl Gloss {
         let [u, v] = displacement.map(|d| d / self.relief_depth);
         (Vec3::Z * self.down - self.along[0] * u - self.along[1] * v).normalize_or(Vec3::Z)
     }
+
+    /// What texels with such normals show to an eye in a direction; those of coarser levels than the
+    /// base are means.
+    #[inline(always)]
+    pub fn shown<L: Lanes>(&self, normal: [L; 3], to_eye: [L; 3], is_base: bool) -> L {
+        let spread = if is_base && self.alpha_squared.is_some() {
+            L::splat(0.0)
+        } else {
+            let square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+            let inverse = L::splat(1.0) / square.at_least(1e-6).sqrt();
+            (inverse + inverse - L::splat(2.0)).at_least(0.0)
+        };
+        let a = L::splat(self.alpha_squared.unwrap_or(LEAST_OWN)) + spread;
+        lobes(normal, [self.to_light.to_array().map(L::splat), to_eye], a.at_most(1.0))
+    }
+}
+
+/// Least `a^2` that is told from lengths, which are rounded.
+const LEAST_OWN: f32 = 1e-4;
+
+/// The length of a normal that stands for a roughness, so that a mean of normals of some roughness
+/// is as rough as they are and their directions differ: `a^2 = 2 (1 - |n|) / |n|`.
+pub fn rough_length(roughness: f32) -> f32 {
+    let a = alpha(roughness);
+    2.0 / (2.0 + a * a)
 }
 
 /// `pi D V n.l` as [`lobe`](super::reflection::lobe), of normals in lanes, of any length above 0,
 /// and an `a^2` up to 1. A normal that faces away from the eye shows as
 /// if the eye stood just above its plane, as in the truth.
 #[inline(always)]
-pub fn lobes<L: Lanes>(normal: [L; 3], [to_light, to_eye]: [[L; 3]; 2], a: L) -> L {
+fn lobes<L: Lanes>(normal: [L; 3], [to_light, to_eye]: [[L; 3]; 2], a: L) -> L {
     let dot = |a: [L; 3], b: [L; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let one = L::splat(1.0);
     let inverse = one / dot(normal, normal).at_least(1e-6).sqrt();
@@ -116,7 +137,7 @@ mod tests {
     fn the_eye_lies_against_the_view() {
         let tangents = [Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 0.0, -2.0)];
         let frame = TextureFrame { tangents, normal: Vec3::Y };
-        let gloss = Gloss::new(&frame, Vec3::Y, 0.5, 0.05);
+        let gloss = Gloss::new(&frame, Vec3::Y, Some(0.5), 0.05);
         // One repeat along u, two world units, for each repeat down.
         let to_eye = gloss.to_eye([0.05, 0.0]);
         assert!(to_eye.distance(Vec3::new(-1.0, 0.0, 1.0).normalize()) < 1e-6, "{to_eye}");

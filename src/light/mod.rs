@@ -23,10 +23,11 @@ pub mod reflection;
 mod surface_point;
 mod vectors;
 
-pub use bake::{Beam, TextureFrame, baked, glossy};
+pub(crate) use bake::glossy;
+pub use bake::{Beam, TextureFrame, baked};
 pub use curved::{Curved, CurvedSun, FrameLanes, LinearSky, Slant, Ways};
 pub use disc::{Disc, spiral};
-pub use gloss::{Gloss, Shine, lobes};
+pub use gloss::{Gloss, rough_length};
 pub use horizons::{Horizons, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE};
 pub use local::{LocalLight, LocalLights, Reflected};
 pub use surface_point::{SurfacePoint, unit_axes};

@@ -11,8 +11,9 @@ use super::open_sky::{Facing, OpenSky, Plane};
 use crate::filter::Prepared;
 use crate::light::exact::Occluders;
 use crate::light::reflection::Fresnel;
-use crate::light::{Gloss, TextureFrame, baked, glossy};
+use crate::light::{Gloss, TextureFrame, baked, glossy, rough_length};
 use crate::scene::{Finish, Light, Material, Mesh, Scene, Sky};
+use crate::texture::Normals;
 use glam::Vec3;
 
 /// Most texels of all baked surfaces of a scene together, some hundred MiB. Pieces beyond, in the
@@ -236,9 +237,13 @@ impl Piece {
             let Light::Sun { to_light, .. } = *light else { return None };
             let beams = frame.beams(std::slice::from_ref(light), &Sky::default());
             let surface = unlit.surface();
-            let gloss = Gloss::new(&frame, to_light, material.roughness, surface.relief_depth());
+            let roughness = material.maps.roughness.is_none().then_some(material.roughness);
+            let gloss = Gloss::new(&frame, to_light, roughness, surface.relief_depth());
+            let length = |x, y| rough_length(finish(x, y).roughness);
+            let normals =
+                if roughness.is_some() { Normals::Kept } else { Normals::Scaled(&length) };
             let is_up = !beams.is_empty();
-            is_up.then(|| (i, unlit.glossy(glossy(surface, &beams, straight), gloss)))
+            is_up.then(|| (i, unlit.glossy(glossy(surface, &beams, normals, straight), gloss)))
         };
         let lights = scene.lights.iter().enumerate().filter(|_| !material.is_matte());
         let gloss = lights.filter_map(of_sun).collect();

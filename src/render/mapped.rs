@@ -7,7 +7,7 @@
 
 use crate::filter::Prepared;
 use crate::scene::{Finish, Material};
-use crate::texture::Texture;
+use crate::texture::{Normals, Texture};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -37,11 +37,12 @@ impl Mapped {
         let glow = has(&material.maps.emissive).then(|| Glow {
             material: Material { base_color: Vec3::ONE, ..Material::default() },
             prepared: unlit.recolored(
-                surface.with_colors(false, |x, y, _| finish_at(x, y).emissive.to_array()),
+                surface
+                    .with_colors(Normals::Dropped, |x, y, _| finish_at(x, y).emissive.to_array()),
             ),
         });
         let diffuse = has(&material.maps.metallic).then(|| {
-            unlit.recolored(surface.with_colors(true, |x, y, albedo| {
+            unlit.recolored(surface.with_colors(Normals::Kept, |x, y, albedo| {
                 albedo.map(|c| c * (1.0 - finish_at(x, y).metallic))
             }))
         });

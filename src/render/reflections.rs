@@ -15,8 +15,8 @@ use super::hidden_lights::HiddenLights;
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
 use crate::filter::{Batch, Filtered, Scratch};
 use crate::footprint::Footprints;
-use crate::light::reflection::{Fresnel, alpha};
-use crate::light::{LocalLights, Shine};
+use crate::light::LocalLights;
+use crate::light::reflection::Fresnel;
 use crate::raster::QuadBlock;
 use crate::scene::Finish;
 use crate::settings::{Filter, Trilinear};
@@ -107,17 +107,13 @@ impl Shader<'_> {
             return None;
         }
         let mean = mean_base(ground);
-        let shine = |(lights, (finish, _)): (&LocalLights, &(Finish, Texel))| {
-            let alpha = alpha(finish.roughness);
-            Shine { to_eye: lights.to_eye, alpha_squared: alpha * alpha }
-        };
-        let shines: Vec<_> = lights.iter().zip(places).map(shine).collect();
+        let to_eyes: Vec<_> = lights.iter().map(|lights| lights.to_eye).collect();
         let mut sums = vec![Vec3::ZERO; lights.len()];
         let mut found = vec![Filtered::default(); pairs.len()];
         for (light, gloss) in gloss {
             let rule = &filter.traits().rule;
             self.footprints((gloss, rule), (block, pairs.clone()), footprints);
-            let batch = Batch { pixels: footprints, shines: &shines, ..Batch::default() };
+            let batch = Batch { pixels: footprints, to_eyes: &to_eyes, ..Batch::default() };
             self.count(filter.colors(gloss, &batch, scratch, &mut found));
             let scale = gloss.surface().color_scale() / FULL_F32;
             let seen = footprints.iter().zip(&found);

@@ -21,6 +21,7 @@ pub(crate) use level::{FULL_F32, unpack_normals};
 pub use mapped::Texture;
 pub(crate) use pyramid::box_taps;
 pub(crate) use rows::{APRON, FARTHEST, RowStarts, Rows};
+pub(crate) use surface::Normals;
 pub use surface::{Surface, SurfaceMaps};
 pub use wrap::Wrap;
 pub(crate) use wrap::{near_origin, wrap_index};

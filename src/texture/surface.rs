@@ -1,6 +1,6 @@
 //! The texels of a material: colour, height and normals of one size, packed, with every mip level.
 
-use super::level::{FULL, FULL_F32, Level, pack_normal};
+use super::level::{FULL, FULL_F32, Level, Texel, pack_normal, unpack_normal};
 use super::rows::PackedTexel;
 use super::wrap::Wrap;
 use super::{ColorImage, HeightImage, NormalImage, pyramid, resample};
@@ -49,6 +49,17 @@ pub struct Surface {
     wrap: Wrap,
     relief_depth: f32,
     color_scale: f32,
+}
+
+/// What becomes of normals where colours change.
+#[derive(Clone, Copy)]
+pub(crate) enum Normals<'a> {
+    /// There are none any more.
+    Dropped,
+    /// They stay.
+    Kept,
+    /// They get a length, 0 to 1, by the column and row of a texel.
+    Scaled(&'a (dyn Fn(usize, usize) -> f32 + Sync)),
 }
 
 impl Surface {
@@ -118,10 +129,10 @@ impl Surface {
 
     /// The surface with other colours on its base level, and their means on the levels above:
     /// `color` gives the linear RGB, 0 or more, of the texel at a column and row from what it was.
-    /// Heights stay, and normals where they are kept.
+    /// Heights stay.
     pub(crate) fn with_colors(
         &self,
-        keeps_normals: bool,
+        normals: Normals,
         color: impl Fn(usize, usize, [f32; 3]) -> [f32; 3] + Sync,
     ) -> Self {
         let [width, height] = self.base().size();
@@ -140,13 +151,25 @@ impl Surface {
         // any order.
         let color_scale = brightest.reduce(|| 0.0, f32::max).max(f32::MIN_POSITIVE);
         let to_stored = FULL_F32 / color_scale;
-        let num_planes = if keeps_normals && self.has_normals() { 3 } else { 2 };
+        let num_planes = match normals {
+            Normals::Scaled(_) => 3,
+            Normals::Kept if self.has_normals() => 3,
+            _ => 2,
+        };
+        let to_stored_normal = |word: u32, x: usize, y: usize| match normals {
+            Normals::Kept if num_planes == 3 => word,
+            Normals::Scaled(length) => {
+                let normal = if self.has_normals() { unpack_normal(word) } else { Texel::UP };
+                pack_normal(normal.map(|c| c * length(x, y)))
+            }
+            _ => 0,
+        };
         let mut texels = vec![PackedTexel::default(); width * height];
         texels.par_chunks_exact_mut(width).enumerate().for_each(|(y, texels)| {
             let old = rows.texels(y).zip(&colors[y * width..]);
-            for (texel, ([_, b, normal], color)) in texels.iter_mut().zip(old) {
+            for (x, (texel, ([_, b, normal], color))) in texels.iter_mut().zip(old).enumerate() {
                 let [red, green, blue] = color.map(|c| ((c * to_stored + 0.5) as u32).min(FULL));
-                let normal = if num_planes == 3 { normal } else { 0 };
+                let normal = to_stored_normal(normal, x, y);
                 *texel = [red | green << 16, blue | b & 0xffff_0000, normal];
             }
         });

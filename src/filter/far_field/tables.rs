@@ -1,7 +1,7 @@
 //! The tables of one surface: for which directions there are any, and how they are built.
 
 use super::encode::FarImage;
-use crate::light::{Gloss, lobes};
+use crate::light::Gloss;
 use crate::relief::directions::{
     Lengths, NUM_LENGTHS, SLOPES, diamond_angle, pseudo_exp, pseudo_log,
 };
@@ -111,7 +111,8 @@ impl FarField {
             let texels = surface.base().texels_per_repeat();
             let [du, dv] = view.displacement;
             let to_eye = gloss.to_eye([du / texels[0], dv / texels[1]]);
-            let shown = shown(&gloss, to_eye.to_array());
+            let to_eye = to_eye.to_array().map(TexelLanes::splat);
+            let shown = |normal| gloss.shown(normal, to_eye, true);
             let seen = seen_image(surface, Seen::Shining(&shown), self.source, size, view);
             // Highlights are as bright as a surface is smooth.
             let brightest = seen.iter().flatten().fold(f32::MIN_POSITIVE, |a, b| a.max(*b));
@@ -174,13 +175,6 @@ impl FarField {
         let (left, part) = (azimuth as usize % num, azimuth - azimuth.floor());
         [(self.starts[length] + left, 1.0 - part), (self.starts[length] + (left + 1) % num, part)]
     }
-}
-
-/// What a texel shows to an eye in a direction, by its normal.
-fn shown(gloss: &Gloss, to_eye: [f32; 3]) -> impl Fn([TexelLanes; 3]) -> TexelLanes + Sync {
-    let directions = [gloss.to_light.to_array(), to_eye].map(|d| d.map(TexelLanes::splat));
-    let alpha_squared = TexelLanes::splat(gloss.alpha_squared);
-    move |normal| lobes(normal, directions, alpha_squared)
 }
 
 /// The mean depth of what is seen at a grazing view.

@@ -60,7 +60,7 @@ pub(super) enum Shown<'a> {
     /// What shines on them, where a curved surface is lit.
     Light(&'a PatchLight<'a>),
     /// Their highlights of a sun.
-    Gloss(&'a PatchGloss),
+    Gloss(&'a PatchGloss<'a>),
 }
 
 /// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then

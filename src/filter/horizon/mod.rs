@@ -41,10 +41,10 @@ use super::batch::{Batch, Filtered, LevelChoice, Work};
 use super::far_field::FarField;
 use super::prepared::Prepared;
 use crate::footprint::{Ellipses, Footprints};
-use crate::light::Shine;
 use crate::settings::Horizon;
 use crate::simd::PixelLanes;
 use crate::texture::{Surface, Texel};
+use glam::Vec3;
 use patch::{MOST_PIXELS, PatchScratch, Patches, Picks};
 
 /// Vectors of pixels that may share a sweep.
@@ -68,7 +68,7 @@ pub(super) struct HorizonScratch {
     shares: Vec<[f32; 8]>,
     /// Pixels that are swept: vector times 8 plus lane.
     near: Vec<u8>,
-    near_shines: Vec<Shine>,
+    near_eyes: Vec<Vec3>,
     found: Vec<Texel>,
 }
 
@@ -85,11 +85,11 @@ pub(super) fn colors(
     let far = far_field(prepared, horizon, batch.is_lit() || is_curved);
     let far = far.as_deref();
     let num_bins = if batch.is_alone { FINE_BINS } else { picture_bins(horizon, batch.is_lit()) };
-    let (mut lights, mut shines) = (batch.lights, batch.shines.iter());
+    let (mut lights, mut to_eyes) = (batch.lights, batch.to_eyes.iter());
     let mut num_rows = 0;
     let chunks = batch.pixels.chunks(NUM_VECTORS).zip(out.chunks_mut(NUM_VECTORS));
     for (i, (pixels, out)) in chunks.enumerate() {
-        let HorizonScratch { patch, base, shares, near, near_shines, found } = scratch;
+        let HorizonScratch { patch, base, shares, near, near_eyes, found } = scratch;
         base_ellipses(surface, pixels, horizon, base);
         share_out(surface, far, (pixels, base), horizon, (shares, near));
         // Sweep what is near.
@@ -97,10 +97,10 @@ pub(super) fn colors(
         found.resize(near.len(), Texel::default());
         // Lit frames have no tables: all covered pixels are near, and the next lights are theirs.
         let (of_these, others) = lights.split_at(if lights.is_empty() { 0 } else { near.len() });
-        near_shines.clear();
+        near_eyes.clear();
         let lanes = pixels.iter().zip(&*shares).flat_map(|(p, s)| p.covered().map(|i| s[i]));
-        let seen_near = lanes.zip(&mut shines).filter(|(share, _)| *share < 1.0);
-        near_shines.extend(seen_near.map(|(_, shine)| *shine));
+        let seen_near = lanes.zip(&mut to_eyes).filter(|(share, _)| *share < 1.0);
+        near_eyes.extend(seen_near.map(|(_, to_eye)| *to_eye));
         let curved = batch.curved.map(|curved| curved.part(i * NUM_VECTORS, pixels.len()));
         let light = curved.as_ref().and_then(|curved| Some((curved, prepared.horizons()?)));
         let patches = Patches {
@@ -110,7 +110,7 @@ pub(super) fn colors(
             least_bias: usize::from(batch.is_lit() || is_curved || prepared.is_lit()),
             ..patches(prepared, (pixels, base), horizon, num_bins, batch.is_lit())
         };
-        let picks = Picks { picks: near, lights: of_these, shines: near_shines };
+        let picks = Picks { picks: near, lights: of_these, to_eyes: near_eyes };
         num_rows += patches.means(picks, patch, found);
         lights = others;
         // Blend it with what the tables give.

@@ -15,11 +15,12 @@ use super::sweep_frame::{SweepFrame, means};
 use crate::filter::points;
 use crate::footprint::levels::{SweepExtent, for_sweep};
 use crate::footprint::{Ellipses, Footprints};
-use crate::light::{Curved, Gloss, Horizons, LocalLights, Shine};
+use crate::light::{Curved, Gloss, Horizons, LocalLights};
 use crate::relief::LevelLoss;
 use crate::settings::Horizon;
 use crate::simd::{PixelLanes, bits_mask};
 use crate::texture::{Surface, Texel};
+use glam::Vec3;
 
 /// Most pixels of a patch.
 pub(super) const MOST_PIXELS: usize = 256;
@@ -68,7 +69,7 @@ pub(super) struct Picks<'a> {
     /// One for each, where they are lit bin by bin.
     pub(super) lights: &'a [LocalLights],
     /// One for each, where highlights are asked for.
-    pub(super) shines: &'a [Shine],
+    pub(super) to_eyes: &'a [Vec3],
 }
 
 impl Picks<'_> {
@@ -78,8 +79,8 @@ impl Picks<'_> {
             all.split_at(if all.is_empty() { 0 } else { middle }).into()
         }
         let (picks, lights) = (halves(self.picks, middle), halves(self.lights, middle));
-        let shines = halves(self.shines, middle);
-        [0, 1].map(|i| Self { picks: picks[i], lights: lights[i], shines: shines[i] })
+        let to_eyes = halves(self.to_eyes, middle);
+        [0, 1].map(|i| Self { picks: picks[i], lights: lights[i], to_eyes: to_eyes[i] })
     }
 }
 
@@ -221,7 +222,7 @@ impl<'a> Patches<'a> {
     fn sweep(
         &self,
         plan: &Plan,
-        Picks { picks, lights, shines }: Picks,
+        Picks { picks, lights, to_eyes }: Picks,
         scratch: &mut PatchScratch,
         found: &mut [Texel],
     ) -> u64 {
@@ -235,7 +236,7 @@ impl<'a> Patches<'a> {
             let light = PatchLight::new(curved, rows, picks, pixels);
             plan.run::<3, true>(unlit, pixels, (&[], Shown::Light(&light)), totals)
         } else if let Some(gloss) = self.gloss {
-            let gloss = PatchGloss::new(gloss, shines, pixels, plan.level);
+            let gloss = PatchGloss::new(gloss, to_eyes, pixels, plan.level);
             plan.run::<3, true>(unlit, pixels, (&[], Shown::Gloss(&gloss)), totals)
         } else {
             plan.run::<3, false>(unlit, pixels, (&[], Shown::Colors), totals)
