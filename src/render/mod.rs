@@ -173,9 +173,10 @@ impl Renderer {
     /// What is drawn, with what is prepared of it, and the buffers that drawing fills.
     pub(crate) fn parts(
         &mut self,
-    ) -> (&Scene, &Settings, &PreparedScene, &mut Geometry, &mut Rasterizer) {
-        let Self { scene, settings, prepared, geometry, rasterizer, .. } = self;
-        (scene, settings, prepared, geometry, rasterizer)
+    ) -> (&Scene, &Settings, &PreparedScene, &Pool<ShadeScratch>, &mut Geometry, &mut Rasterizer)
+    {
+        let Self { scene, settings, prepared, pool, geometry, rasterizer } = self;
+        (scene, settings, prepared, pool, geometry, rasterizer)
     }
 
     /// Draws a frame on the threads of the current rayon pool.
