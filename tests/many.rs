@@ -74,6 +74,24 @@ fn memory_of_the_callers_holds_the_same() {
 }
 
 #[test]
+fn frames_of_cameras_come_one_by_one() {
+    let mut renderer = renderer(Vec3::ZERO, Lighting::Unlit);
+    let camera = renderer.scene().camera;
+    let cameras =
+        [2.0, 0.0, -1.0, f32::NAN].map(|x| Camera { eye: Vec3::new(x, 2.0, 5.0), ..camera });
+    let mut asked = 0;
+    let counted = cameras.iter().inspect(|_| asked += 1).copied();
+    let first = renderer.frames::<[u8; 4]>(counted).next();
+    assert!(matches!(first, Some(Ok(_))) && asked == 1);
+    let frames: Vec<_> = renderer.frames(cameras).collect();
+    assert_eq!(frames.iter().map(Result::is_ok).collect::<Vec<_>>(), [true, true, true, false]);
+    for (camera, frame) in cameras.into_iter().zip(frames).take(3) {
+        renderer.set_camera(camera).expect("a valid camera");
+        assert!(renderer.render() == frame.expect("a frame"));
+    }
+}
+
+#[test]
 fn pictures_and_layers_together_are_those_of_each_alone() {
     let one = ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let layers = Layer::ALL;

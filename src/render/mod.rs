@@ -186,6 +186,36 @@ impl Renderer {
         frame
     }
 
+    /// A frame for each of `cameras`, drawn when it is asked for, so that there may be more of them
+    /// than memory holds.
+    ///
+    /// ```no_run
+    /// use basrelief::{Camera, Frame, Renderer, Settings, scene};
+    ///
+    /// let mut renderer = Renderer::new(scene::builtin(), Settings::default())?;
+    /// let first = renderer.scene().camera;
+    /// let along = (0..10_000).map(|i| Camera { eye: first.eye + 0.001 * i as f32, ..first });
+    /// for (i, frame) in renderer.frames(along).enumerate() {
+    ///     let frame: Frame<[u8; 4]> = frame?;
+    ///     frame.save(format!("{i:05}.png"))?;
+    /// }
+    /// # Ok::<(), basrelief::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Of each frame: names what is wrong with its camera.
+    pub fn frames<P: DrawnPixel>(
+        &mut self,
+        cameras: impl IntoIterator<Item = Camera>,
+    ) -> impl Iterator<Item = Result<Frame<P>>> {
+        cameras.into_iter().map(|camera| {
+            self.set_camera(camera)?;
+            let mut frame = Frame::default();
+            self.render_into(&mut frame);
+            Ok(frame)
+        })
+    }
+
     /// Draws over a frame, whose memory is taken again where its size is right.
     pub fn render_into<P: DrawnPixel>(&mut self, frame: &mut Frame<P>) {
         self.render_timed(frame, &|| 0.0);
