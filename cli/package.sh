@@ -85,7 +85,7 @@ Suggests: libx11-xcb1, libxcursor1, libxi6, libxkbcommon-x11-0
 Section: graphics
 Priority: optional
 Description: draws relief-mapped surfaces on the processor
- Renders OBJ scenes with height maps into pictures, without a graphics
+ Renders OBJ and glTF scenes with height maps into pictures, without a graphics
  processor or a display, and with the same bytes on every machine. Its filters
  leave out what the relief hides from the eye.
 END
