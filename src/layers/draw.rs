@@ -6,7 +6,7 @@ use super::place::write_place;
 use super::values::{Band, Layers, PixelsMut, ValuesMut};
 use crate::geometry::Projection;
 use crate::raster::{CenterRow, CenterTile, Centers, Drawn, Follow, QuadBlock};
-use crate::render::{DrawnPixel, Passages, Renderer, Shader};
+use crate::render::{DrawnPixel, Passages, PreparedScene, Renderer, Shader};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::simd::set_bits;
@@ -35,7 +35,7 @@ impl Renderer {
     /// [`Settings::msaa`] is 1, triangles are projected and what pixels see is found once for both.
     ///
     /// # Panics
-    /// If there are not as many pixels as [`Settings::drawn`] says, or as the two say.
+    /// As the two do.
     pub fn render_with_layers_to(&mut self, pixels: PixelsMut, layers: Vec<(Layer, ValuesMut)>) {
         match pixels {
             PixelsMut::Bytes(pixels) => self.see_layers(Some(pixels), layers),
@@ -48,36 +48,17 @@ impl Renderer {
         mut pixels: Option<&mut [P]>,
         layers: Vec<(Layer, ValuesMut)>,
     ) {
-        // Layers are shared out by rows of tiles: few for many threads.
-        let asked = self.settings();
-        let num_rows = asked.height / asked.tile_size;
-        let is_shared = asked.msaa == 1
-            && asked.region.is_none()
-            && num_rows as usize >= 2 * rayon::current_num_threads();
-        if (!is_shared || layers.is_empty())
-            && let Some(pixels) = pixels.take()
-        {
+        let is_shared = !layers.is_empty() && shares_visibility(self.settings());
+        if !is_shared && let Some(pixels) = pixels.take() {
             self.render_to(pixels);
         }
         if layers.is_empty() {
             return;
         }
         let (scene, asked, prepared, pool, geometry, rasterizer) = self.parts();
-        let has_relief = |material: usize| {
-            prepared.of_material(material, true).is_some_and(|surface| surface.field().is_some())
-        };
-        let is_traced = asked.parallax
-            && layers.iter().any(|(layer, _)| layer.is_of_hit())
-            && (0..scene.materials.len()).any(has_relief);
+        let settings = layer_settings(scene, asked, prepared, &layers);
+        let is_traced = settings.parallax;
         let has_quads = layers.iter().any(|(layer, _)| layer.asks_for_quads(is_traced));
-        let has_normals = layers.iter().any(|(layer, _)| layer.is_normal());
-        let settings = Settings {
-            msaa: 1,
-            // What is lit has normals.
-            lighting: if has_normals { Lighting::Lit } else { Lighting::Unlit },
-            parallax: is_traced,
-            ..asked.clone()
-        };
         geometry.project(scene, &settings);
         let projection = *geometry.projection();
         // What names and polygons are of is seen past outlines, too.
@@ -101,6 +82,38 @@ impl Renderer {
         } else {
             rasterizer.see_centers(geometry, centers, &mut bands);
         }
+    }
+}
+
+/// Whether pictures and layers of a frame see the same samples, and rows of tiles, by which layers
+/// are shared out, are enough for all threads.
+fn shares_visibility(settings: &Settings) -> bool {
+    let num_rows = settings.height / settings.tile_size;
+    settings.msaa == 1
+        && settings.region.is_none()
+        && num_rows as usize >= 2 * rayon::current_num_threads()
+}
+
+/// The settings that layers of a frame are drawn by; `parallax` says whether relief is traced.
+fn layer_settings(
+    scene: &Scene,
+    asked: &Settings,
+    prepared: &PreparedScene,
+    layers: &[(Layer, ValuesMut)],
+) -> Settings {
+    let has_relief = |material: usize| {
+        prepared.of_material(material, true).is_some_and(|surface| surface.field().is_some())
+    };
+    let is_traced = asked.parallax
+        && layers.iter().any(|(layer, _)| layer.is_of_hit())
+        && (0..scene.materials.len()).any(has_relief);
+    let has_normals = layers.iter().any(|(layer, _)| layer.is_normal());
+    Settings {
+        msaa: 1,
+        // What is lit has normals.
+        lighting: if has_normals { Lighting::Lit } else { Lighting::Unlit },
+        parallax: is_traced,
+        ..asked.clone()
     }
 }
 
