@@ -48,21 +48,7 @@ find "$tree/share/man" -name '*.1' -exec gzip -n9 {} +
 "$program" completions fish >"$tree/share/fish/vendor_completions.d/basrelief.fish"
 cp docs/program.md docs/layers.md CHANGELOG.md "$tree/share/doc/basrelief/"
 
-# The licences of this and of every crate that is linked in, with their texts.
-licences() {
-    local package manifest file
-    cat LICENSE-MIT LICENSE-APACHE
-    cargo tree --locked -p basrelief-cli --features viewer -e normal --prefix none --no-dedupe -f '{p}|{l}' |
-        sed 's/ (proc-macro)//; s/ (.*)|/|/; /^$/d' | sort -u >"$folder/crates"
-    while IFS='|' read -r package licence; do
-        printf '\n==== %s: %s ====\n' "$package" "$licence"
-        manifest=$(find "${CARGO_HOME:-$HOME/.cargo}/registry/src" -mindepth 2 -maxdepth 2 -name "${package/ v/-}" -print -quit)
-        [ -n "$manifest" ] || continue
-        while read -r file; do cat "$file"; done < <(find "$manifest" -maxdepth 1 -type f -iname '*licen[cs]e*' | sort)
-    done <"$folder/crates"
-    rm "$folder/crates"
-}
-licences >"$tree/share/doc/basrelief/copyright"
+cli/licences.sh basrelief-cli --features viewer >"$tree/share/doc/basrelief/copyright"
 
 archive=$folder/$name.tar.gz
 tar -C "$folder" --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=u+w,go-w -cf - "$name" |
@@ -85,7 +71,7 @@ Suggests: libx11-xcb1, libxcursor1, libxi6, libxkbcommon-x11-0
 Section: graphics
 Priority: optional
 Description: draws relief-mapped surfaces on the processor
- Renders OBJ scenes with height maps into pictures, without a graphics
+ Renders OBJ and glTF scenes with height maps into pictures, without a graphics
  processor or a display, and with the same bytes on every machine. Its filters
  leave out what the relief hides from the eye.
 END

@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example many_frames -- [number of frames] [FILE.obj] [TEXTURE]`
 
-use basrelief::layers::ValuesMut;
+use basrelief::layers::{PixelsMut, ValuesMut};
 use basrelief::load::{LoadOptions, MaterialOptions, load};
 use basrelief::{Camera, Filter, Layer, Renderer, Settings, scene};
 use glam::Quat;
@@ -25,9 +25,13 @@ fn main() -> basrelief::Result<()> {
     };
     let filter = Filter::Trilinear(Default::default());
     let settings = Settings { width: SIDE, height: SIDE, filter, msaa: 1, ..Settings::default() };
-    let mut renderer = Renderer::new(scene, settings)?;
-    let first = renderer.scene().camera;
+    let renderer = Renderer::new(scene, settings)?;
+    // On a thread of the pool that frames are drawn on: none is woken for each frame anew.
+    rayon::scope(|_| draw(renderer, num))
+}
 
+fn draw(mut renderer: Renderer, num: u32) -> basrelief::Result<()> {
+    let first = renderer.scene().camera;
     // Row by row: a picture in sRGB, distances, and which mesh a pixel sees.
     let num_pixels = (SIDE * SIDE) as usize;
     let mut colors = vec![[0_u8; 4]; num_pixels];
@@ -38,11 +42,11 @@ fn main() -> basrelief::Result<()> {
         let turn = Quat::from_rotation_y(TAU * i as f32 / num as f32);
         let eye = first.target + turn * (first.eye - first.target);
         renderer.set_camera(Camera { eye, ..first })?;
-        renderer.render_to(&mut colors);
-        renderer.render_layers_to(vec![
+        let layers = vec![
             (Layer::Depth, ValuesMut::Floats(&mut depths)),
             (Layer::Object, ValuesMut::Ids(&mut objects)),
-        ]);
+        ];
+        renderer.render_with_layers_to(PixelsMut::Bytes(&mut colors), layers);
         num_seen += objects.iter().filter(|object| **object != u32::MAX).count();
     }
     let ms = start.elapsed().as_secs_f64() * 1e3 / f64::from(num);

@@ -1,11 +1,12 @@
 //! Frames in memory of the caller's, and meshes that move, are what new frames and scenes are.
 
-use basrelief::layers::ValuesMut;
+use basrelief::layers::{PixelsMut, Values, ValuesMut};
 use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps};
 use basrelief::{
     Camera, Frame, Layer, Light, Lighting, Material, Mesh, Region, Renderer, Scene, Settings,
 };
 use glam::{Vec2, Vec3};
+use rayon::ThreadPoolBuilder;
 
 /// A floor of ridges with a tetrahedron over it that is moved by `offset`, in the sun.
 fn scene(offset: Vec3) -> Scene {
@@ -69,6 +70,60 @@ fn memory_of_the_callers_holds_the_same() {
             (layers.floats(Layer::Normal), layers.ids(Layer::Object)),
             (&*normals, &*objects)
         );
+    }
+}
+
+#[test]
+fn frames_of_cameras_come_one_by_one() {
+    let mut renderer = renderer(Vec3::ZERO, Lighting::Unlit);
+    let camera = renderer.scene().camera;
+    let cameras =
+        [2.0, 0.0, -1.0, f32::NAN].map(|x| Camera { eye: Vec3::new(x, 2.0, 5.0), ..camera });
+    let mut asked = 0;
+    let counted = cameras.iter().inspect(|_| asked += 1).copied();
+    let first = renderer.frames::<[u8; 4]>(counted).next();
+    assert!(matches!(first, Some(Ok(_))) && asked == 1);
+    let frames: Vec<_> = renderer.frames(cameras).collect();
+    assert_eq!(frames.iter().map(Result::is_ok).collect::<Vec<_>>(), [true, true, true, false]);
+    for (camera, frame) in cameras.into_iter().zip(frames).take(3) {
+        renderer.set_camera(camera).expect("a valid camera");
+        assert!(renderer.render() == frame.expect("a frame"));
+    }
+}
+
+#[test]
+fn pictures_and_layers_together_are_those_of_each_alone() {
+    let one = ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let layers = Layer::ALL;
+    for (msaa, lighting) in [(1, Lighting::Lit), (1, Lighting::Unlit), (4, Lighting::Unlit)] {
+        let settings = Settings { msaa, tile_size: 16, ..settings(lighting) };
+        let mut renderer = Renderer::new(scene(Vec3::ZERO), settings).expect("a valid scene");
+        for region in [None, Some(Region { x: 11, y: 7, width: 40, height: 30 })] {
+            renderer.set_region(region).expect("a region of the frame");
+            let frame = renderer.render();
+            let alone = renderer.render_layers(&layers);
+            for pool in [Some(&one), None] {
+                let mut pixels = vec![[7.0; 4]; frame.pixels.len()];
+                let mut found = alone.clone();
+                let values = found.all.iter_mut().map(|(layer, values)| match values {
+                    Values::Floats(values) => {
+                        values.fill(7.0);
+                        (*layer, ValuesMut::Floats(values))
+                    }
+                    Values::Ids(values) => {
+                        values.fill(7);
+                        (*layer, ValuesMut::Ids(values))
+                    }
+                });
+                let (values, to) = (values.collect(), PixelsMut::Linear(&mut pixels));
+                let draw = || renderer.render_with_layers_to(to, values);
+                match pool {
+                    Some(pool) => pool.install(draw),
+                    None => draw(),
+                }
+                assert!(pixels == frame.pixels && found == alone, "{msaa} {lighting:?}");
+            }
+        }
     }
 }
 

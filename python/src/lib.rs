@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `arguments` | what callers give, checked; refusals name the argument |
 //! | `images` | arrays to the images of a surface |
+//! | `pickles` | how a thing is made again in another process |
 //! | `pools` | threads, made at first use, in each process its own |
 //! | `camera`, `lights`, `material`, `mesh`, `scene`, `load` | what is drawn |
 //! | `settings` | how it is drawn |
@@ -26,6 +27,7 @@ mod lights;
 mod load;
 mod material;
 mod mesh;
+mod pickles;
 mod pools;
 mod renderer;
 mod scene;

@@ -1,7 +1,8 @@
 //! What lights a scene. Colours are linear; a white surface that faces an intensity of 1 is drawn
 //! white.
 
-use crate::arguments::{color, exception, floats, numbers, refused, vector};
+use crate::arguments::{color, exception, floats, numbers, refused, tuple, vector};
+use crate::pickles::{Made, array, made};
 use basrelief::Light;
 use glam::Vec3;
 use numpy::PyUntypedArrayMethods;
@@ -31,6 +32,10 @@ impl Sun {
         Ok(Self(Light::Sun { to_light, intensity: given(color)?, angular_size: size }))
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py>> {
+        light(py, self.0)
+    }
+
     fn __repr__(&self) -> String {
         format!("{:?}", self.0)
     }
@@ -55,8 +60,24 @@ impl PointLight {
         Ok(Self(Light::Point { position, intensity: given(color)? }))
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py>> {
+        light(py, self.0)
+    }
+
     fn __repr__(&self) -> String {
         format!("{:?}", self.0)
+    }
+}
+
+/// What makes a light again.
+fn light(py: Python<'_>, light: Light) -> PyResult<Made<'_>> {
+    match light {
+        Light::Sun { to_light, intensity, angular_size } => {
+            made::<Sun>(py, (tuple(py, to_light)?, tuple(py, intensity)?, angular_size))
+        }
+        Light::Point { position, intensity } => {
+            made::<PointLight>(py, (tuple(py, position)?, tuple(py, intensity)?))
+        }
     }
 }
 
@@ -88,6 +109,16 @@ impl Sky {
         let ground = ground.map_or(Ok(horizon), |ground| color(ground, "ground"))?;
         Ok(Self(basrelief::Sky::Gradient { top, horizon, ground }))
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py>> {
+        match &self.0 {
+            basrelief::Sky::Color(color) => made::<Self>(py, (tuple(py, *color)?,)),
+            basrelief::Sky::Gradient { top, horizon, ground } => {
+                made::<Self>(py, (tuple(py, *top)?, tuple(py, *horizon)?, tuple(py, *ground)?))
+            }
+            basrelief::Sky::Environment(_) => unreachable!("a class of its own"),
+        }
+    }
 }
 
 /// Light from everywhere by a picture of all directions.
@@ -113,5 +144,11 @@ impl Environment {
         let texels: Vec<_> =
             numbers(&image)?.as_chunks::<3>().0.iter().map(|c| Vec3::from(*c)).collect();
         basrelief::Environment::new(width, height, texels, turn).map(Self).map_err(exception)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py>> {
+        let [width, height] = self.0.size();
+        let texels = self.0.texels().iter().flat_map(|texel| texel.to_array()).collect();
+        made::<Self>(py, (array(py, texels, &[height, width, 3])?, self.0.turn_degrees()))
     }
 }

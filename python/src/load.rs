@@ -2,14 +2,26 @@
 
 use crate::arguments::{choice, color, exception, refused};
 use crate::images;
+use crate::pickles::copy;
 use crate::pools;
-use crate::scene::Scene;
+use crate::scene::{Scene, Source};
 use basrelief::load::{HeightSense, LoadOptions, MaterialOptions, NormalY};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use std::path::PathBuf;
+use pyo3::types::{PyDict, PyTuple};
+use std::path::{Path, PathBuf, absolute};
 use std::sync::Arc;
+
+/// Options that name files.
+const FILES: [&str; 7] = [
+    "albedo",
+    "height",
+    "normal",
+    "metallic_map",
+    "roughness_map",
+    "occlusion_map",
+    "emissive_map",
+];
 
 /// A scene from a file with its materials and images.
 ///
@@ -57,7 +69,36 @@ pub(crate) fn load(
     }
     let loaded = pools::run(py, || basrelief::load::load(&path, &wanted))?.map_err(exception)?;
     let remarks = [loaded.warnings, loaded.choices];
-    Ok(Scene { scene: Arc::new(loaded.scene), remarks })
+    let source = Source::File(again(py, &path, materials, options)?);
+    Ok(Scene { scene: Arc::new(loaded.scene), remarks, source })
+}
+
+/// What loads the file again, from any folder.
+fn again<'py>(
+    py: Python<'py>,
+    path: &Path,
+    materials: Option<&Bound<'py, PyDict>>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Py<PyTuple>> {
+    let all = PyDict::new(py);
+    for (name, own) in materials.into_iter().flatten() {
+        all.set_item(name, kept(own.cast()?)?)?;
+    }
+    let options = options.map_or_else(|| Ok(PyDict::new(py)), kept)?;
+    Ok((absolute(path)?, all, options).into_pyobject(py)?.unbind())
+}
+
+/// A copy of options that does not hang on the current folder.
+fn kept<'py>(options: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
+    let kept = PyDict::new(options.py());
+    for (name, value) in options {
+        if FILES.contains(&&*name.extract::<String>()?) {
+            kept.set_item(name, absolute(value.extract::<PathBuf>()?)?)?;
+        } else {
+            kept.set_item(name, copy(&value)?)?;
+        }
+    }
+    Ok(kept)
 }
 
 fn unknown(name: &str) -> PyErr {

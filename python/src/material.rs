@@ -1,11 +1,13 @@
 //! What surfaces are made of.
 
-use crate::arguments::{choice, color, exception};
+use crate::arguments::{choice, color, exception, tuple};
+use crate::pickles::{Made, copy, rebuilt};
 use crate::{images, pools};
 use basrelief::texture::{Surface, SurfaceMaps, Texture, Wrap};
 use basrelief::{Error, MaterialMaps};
 use glam::Vec3;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// What a surface is made of, in the terms of glTF 2.0.
@@ -28,7 +30,12 @@ use std::sync::Arc;
 /// Row 0 of an image is its top. Maps need a mesh with texture coordinates.
 #[pyclass(frozen, module = "basrelief")]
 #[derive(Debug)]
-pub(crate) struct Material(pub(crate) basrelief::Material);
+pub(crate) struct Material {
+    pub(crate) material: basrelief::Material,
+    /// Its images as they were given, and how they are read: a surface has them no more, packed and
+    /// of one size.
+    given: Py<PyDict>,
+}
 
 #[pymethods]
 impl Material {
@@ -56,7 +63,7 @@ impl Material {
         emissive_map: Option<&Bound<'_, PyAny>>,
         wrap: &str,
     ) -> PyResult<Self> {
-        let wrap = images::wrap(wrap)?;
+        let (wrap_word, wrap) = (wrap, images::wrap(wrap)?);
         let gray = |arg: Option<&Bound<'_, PyAny>>, name| {
             let Some(arg) = arg else { return Ok(None) };
             texture(py, images::gray(arg, name)?, wrap, Texture::gray)
@@ -80,7 +87,7 @@ impl Material {
         let rgb = |arg: Option<&Bound<'_, PyAny>>, name, default| {
             arg.map_or(Ok(default), |arg| color(arg, name))
         };
-        Ok(Self(basrelief::Material {
+        let made = basrelief::Material {
             name: name.into(),
             base_color: rgb(base_color, "base_color", Vec3::ONE)?,
             metallic,
@@ -90,16 +97,53 @@ impl Material {
             maps,
             surface,
             ..basrelief::Material::default()
-        }))
+        };
+        let given = PyDict::new(py);
+        for (name, image) in [
+            ("albedo", albedo),
+            ("height", height),
+            ("normal", normal),
+            ("metallic_map", metallic_map),
+            ("roughness_map", roughness_map),
+            ("occlusion_map", occlusion_map),
+            ("emissive_map", emissive_map),
+        ] {
+            image.map_or(Ok(()), |image| given.set_item(name, copy(image)?))?;
+        }
+        given.set_item("relief_depth", relief_depth)?;
+        given.set_item("normal_y", normal_y)?;
+        given.set_item("wrap", wrap_word)?;
+        Ok(Self { material: made, given: given.unbind() })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py>> {
+        let basrelief::Material {
+            name, base_color, emissive, metallic, specular, roughness, ..
+        } = &self.material;
+        let given = self.given.bind(py).copy()?;
+        given.set_item("name", name)?;
+        given.set_item("base_color", tuple(py, *base_color)?)?;
+        given.set_item("emissive", tuple(py, *emissive)?)?;
+        for (name, value) in
+            [("metallic", metallic), ("specular", specular), ("roughness", roughness)]
+        {
+            given.set_item(name, value)?;
+        }
+        rebuilt::<Self>(py, (given,))
+    }
+
+    #[staticmethod]
+    fn _rebuild<'py>(py: Python<'py>, given: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
+        py.get_type::<Self>().call((), Some(given))
     }
 
     #[getter]
     fn name(&self) -> &str {
-        &self.0.name
+        &self.material.name
     }
 
     fn __repr__(&self) -> String {
-        format!("<Material \"{}\">", self.0.name.escape_debug())
+        format!("<Material \"{}\">", self.material.name.escape_debug())
     }
 }
 

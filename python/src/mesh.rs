@@ -2,6 +2,8 @@
 
 use crate::arguments::{mistyped, places, points, refused, triangles};
 use crate::material::Material;
+use crate::pickles::{Made, array, made};
+use glam::Vec3;
 use pyo3::prelude::*;
 
 /// Triangles of one material.
@@ -63,6 +65,23 @@ impl Mesh {
     #[getter]
     fn name(&self) -> &str {
         &self.mesh.name
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py>> {
+        let basrelief::Mesh { name, triangles, positions, tex_coords, normals, colors, .. } =
+            &self.mesh;
+        let rows = |rows: &[Vec3]| {
+            array(py, rows.iter().flat_map(|v| v.to_array()).collect(), &[rows.len(), 3])
+        };
+        let uv = (!tex_coords.is_empty()).then(|| {
+            let numbers = tex_coords.iter().flat_map(|v| v.to_array()).collect();
+            array(py, numbers, &[tex_coords.len(), 2])
+        });
+        let colors = (!colors.is_empty()).then(|| rows(colors));
+        let faces = array(py, triangles.as_flattened().to_vec(), &[triangles.len(), 3])?;
+        let material = self.material.as_ref().map(|material| material.clone_ref(py));
+        let (uv, colors) = (uv.transpose()?, colors.transpose()?);
+        made::<Self>(py, (rows(positions)?, faces, uv, rows(normals)?, material, name, colors))
     }
 
     fn __repr__(&self) -> String {

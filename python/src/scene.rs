@@ -3,11 +3,15 @@
 use crate::arguments::{color, exception, mistyped, refused, tuple};
 use crate::camera::Camera;
 use crate::lights::{Environment, PointLight, Sky, Sun};
+use crate::load::load;
+use crate::material::Material;
 use crate::mesh::Mesh;
+use crate::pickles::{Made, rebuilt};
 use basrelief::Light;
 use glam::Vec3;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyList, PyTuple};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// All that is drawn: meshes, lights, a sky, a background, and a camera to begin with. It does not
@@ -26,12 +30,37 @@ use std::sync::Arc;
 pub(crate) struct Scene {
     pub(crate) scene: Arc<basrelief::Scene>,
     pub(crate) remarks: [Vec<String>; 2],
+    pub(crate) source: Source,
+}
+
+/// Where meshes and materials come from.
+#[derive(Debug)]
+pub(crate) enum Source {
+    Builtin,
+    /// Arrays: the materials, in the scene's order.
+    Arrays(Vec<Option<Py<Material>>>),
+    /// A file: what [`load`](crate::load::load) is called with.
+    File(Py<PyTuple>),
+}
+
+impl Source {
+    fn clone_ref(&self, py: Python<'_>) -> Self {
+        match self {
+            Self::Builtin => Self::Builtin,
+            Self::Arrays(materials) => {
+                let own = |material: &Option<Py<_>>| material.as_ref().map(|m| m.clone_ref(py));
+                Self::Arrays(materials.iter().map(own).collect())
+            }
+            Self::File(args) => Self::File(args.clone_ref(py)),
+        }
+    }
 }
 
 /// The built-in scene: an arch of hewn stone on a cobbled street, in the sun.
 #[pyfunction]
 pub(crate) fn builtin() -> Scene {
-    Scene { scene: Arc::new(basrelief::scene::builtin()), remarks: Default::default() }
+    let scene = Arc::new(basrelief::scene::builtin());
+    Scene { scene, remarks: Default::default(), source: Source::Builtin }
 }
 
 #[pymethods]
@@ -39,6 +68,7 @@ impl Scene {
     #[new]
     #[pyo3(signature = (meshes, lights = None, sky = None, background = None, camera = None))]
     fn new(
+        py: Python<'_>,
         meshes: Vec<Py<Mesh>>,
         lights: Option<Vec<Bound<'_, PyAny>>>,
         sky: Option<&Bound<'_, PyAny>>,
@@ -46,16 +76,17 @@ impl Scene {
         camera: Option<Camera>,
     ) -> PyResult<Self> {
         let mut scene = basrelief::Scene::default();
-        let mut known: Vec<Option<usize>> = Vec::new();
+        let mut known: Vec<Option<Py<Material>>> = Vec::new();
         for mesh in &meshes {
             let Mesh { mesh, material } = mesh.get();
             // Materials are told apart by address, as Python does.
-            let address = material.as_ref().map(|material| material.as_ptr() as usize);
-            let index = known.iter().position(|other| *other == address).unwrap_or(known.len());
+            let address = |material: &Option<Py<_>>| material.as_ref().map(Py::as_ptr);
+            let index = known.iter().position(|other| address(other) == address(material));
+            let index = index.unwrap_or(known.len());
             if index == known.len() {
-                known.push(address);
+                known.push(material.as_ref().map(|material| material.clone_ref(py)));
                 let plain = basrelief::Material { name: "none".into(), ..Default::default() };
-                let own = material.as_ref().map(|material| material.get().0.clone());
+                let own = material.as_ref().map(|material| material.get().material.clone());
                 scene.materials.push(own.unwrap_or(plain));
             }
             scene.meshes.push(basrelief::Mesh { material: index, ..mesh.clone() });
@@ -70,7 +101,8 @@ impl Scene {
             scene.camera = framing(&scene, 1.0)?;
             scene.validate().map_err(exception)?;
         }
-        Ok(Self { scene: Arc::new(scene), remarks: Default::default() })
+        let source = Source::Arrays(known);
+        Ok(Self { scene: Arc::new(scene), remarks: Default::default(), source })
     }
 
     /// The camera to begin with.
@@ -126,6 +158,7 @@ impl Scene {
     #[pyo3(signature = (*, lights = None, sky = None, background = None, camera = None))]
     fn replace(
         &self,
+        py: Python<'_>,
         lights: Option<Vec<Bound<'_, PyAny>>>,
         sky: Option<&Bound<'_, PyAny>>,
         background: Option<&Bound<'_, PyAny>>,
@@ -139,7 +172,52 @@ impl Scene {
         scene.background = background.map_or(Ok(scene.background), background_of)?;
         scene.camera = camera.map_or(scene.camera, |camera| camera.0);
         scene.validate().map_err(exception)?;
-        Ok(Self { scene: Arc::new(scene), remarks: self.remarks.clone() })
+        let (remarks, source) = (self.remarks.clone(), self.source.clone_ref(py));
+        Ok(Self { scene: Arc::new(scene), remarks, source })
+    }
+
+    /// For copies and pickles: arrays go along; a file is read again, with what was replaced since.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py>> {
+        let lights = self.scene.lights.iter().map(|light| match light {
+            Light::Sun { .. } => Bound::new(py, Sun(*light)).map(Bound::into_any),
+            Light::Point { .. } => Bound::new(py, PointLight(*light)).map(Bound::into_any),
+        });
+        let sky = match &self.scene.sky {
+            basrelief::Sky::Environment(picture) => {
+                Bound::new(py, Environment(picture.clone()))?.into_any()
+            }
+            sky => Bound::new(py, Sky(sky.clone()))?.into_any(),
+        };
+        let source = match &self.source {
+            Source::Builtin => None,
+            Source::Arrays(materials) => Some(self.meshes(py, materials)?.into_any()),
+            Source::File(args) => Some(args.bind(py).clone().into_any()),
+        };
+        let lights = PyTuple::new(py, lights.collect::<PyResult<Vec<_>>>()?)?;
+        let [r, g, b, a] = self.scene.background;
+        rebuilt::<Self>(py, (source, lights, sky, (r, g, b, a), self.camera()))
+    }
+
+    #[staticmethod]
+    fn _rebuild(
+        py: Python<'_>,
+        source: Option<&Bound<'_, PyAny>>,
+        lights: Vec<Bound<'_, PyAny>>,
+        sky: &Bound<'_, PyAny>,
+        background: &Bound<'_, PyAny>,
+        camera: Camera,
+    ) -> PyResult<Self> {
+        let given = (Some(lights), Some(sky), Some(background), Some(camera));
+        let Some(source) = source else {
+            return builtin().replace(py, given.0, given.1, given.2, given.3);
+        };
+        if let Ok(meshes) = source.cast::<PyList>() {
+            return Self::new(py, meshes.extract()?, given.0, given.1, given.2, given.3);
+        }
+        type File<'py> = (PathBuf, Bound<'py, PyDict>, Bound<'py, PyDict>);
+        let (path, materials, options): File<'_> = source.extract()?;
+        load(py, path, Some(&materials), Some(&options))?
+            .replace(py, given.0, given.1, given.2, given.3)
     }
 
     fn __repr__(&self) -> String {
@@ -147,6 +225,21 @@ impl Scene {
         let num: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
         let [num_meshes, num_materials] = [scene.meshes.len(), scene.materials.len()];
         format!("<Scene of {num_meshes} meshes, {num_materials} materials, {num} triangles>")
+    }
+}
+
+impl Scene {
+    /// Its meshes, of the scene's own materials.
+    fn meshes<'py>(
+        &self,
+        py: Python<'py>,
+        materials: &[Option<Py<Material>>],
+    ) -> PyResult<Bound<'py, PyList>> {
+        let meshes = self.scene.meshes.iter().map(|mesh| {
+            let material = materials[mesh.material].as_ref().map(|m| m.clone_ref(py));
+            Bound::new(py, Mesh { mesh: mesh.clone(), material })
+        });
+        PyList::new(py, meshes.collect::<PyResult<Vec<_>>>()?)
     }
 }
 

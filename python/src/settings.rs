@@ -1,6 +1,7 @@
 //! How frames are drawn.
 
 use crate::arguments::{choice, exception, refused};
+use crate::pickles::{Made, rebuilt};
 use basrelief::{Derivatives, Formulas, Lighting, Settings, Tone, Visibility};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -53,9 +54,77 @@ impl Filter {
         Ok(Self(filter))
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Made<'py>> {
+        rebuilt::<Self>(py, (name(&self.0), options(py, self.0)?))
+    }
+
+    #[staticmethod]
+    fn _rebuild(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Self> {
+        Self::new(name, Some(options))
+    }
+
     fn __repr__(&self) -> String {
         format!("{:?}", self.0)
     }
+}
+
+const DERIVATIVES: [(&str, Derivatives); 2] =
+    [("flat", Derivatives::Flat), ("relief", Derivatives::Relief)];
+const FORMULAS: [(&str, Formulas); 2] =
+    [("meant", Formulas::Meant), ("printed", Formulas::Printed)];
+const VISIBILITIES: [(&str, Visibility); 3] = [
+    ("exact", Visibility::Exact),
+    ("two-ended", Visibility::TwoEnded),
+    ("resolved", Visibility::Resolved),
+];
+
+fn name(filter: &basrelief::Filter) -> &'static str {
+    let is_same = |other| std::mem::discriminant(filter) == std::mem::discriminant(other);
+    FILTERS.iter().find(|(_, other)| is_same(other)).map_or("horizon", |(name, _)| name)
+}
+
+/// All options that a filter has, as a caller would give them.
+fn options(py: Python<'_>, mut filter: basrelief::Filter) -> PyResult<Bound<'_, PyDict>> {
+    fn word<T: PartialEq>(
+        value: Option<&mut T>,
+        choices: &[(&'static str, T)],
+    ) -> Option<&'static str> {
+        let value = value?;
+        choices.iter().find(|(_, other)| other == value).map(|(word, _)| *word)
+    }
+    let of = filter.options_mut();
+    let numbers = [
+        ("lines", of.lines),
+        ("far_field_mib", of.far_field_mib),
+        ("texel_budget", of.texel_budget),
+        ("samples", of.samples),
+    ];
+    let shares = [
+        ("max_anisotropy", of.max_anisotropy),
+        ("max_stretch", of.max_stretch),
+        ("cut", of.cut),
+        ("texel_kernel", of.texel_kernel),
+    ];
+    let switches = [("far_field", of.far_field), ("every_texel", of.every_texel)];
+    let words = [
+        ("derivatives", word(of.derivatives, &DERIVATIVES)),
+        ("formulas", word(of.formulas, &FORMULAS)),
+        ("visible", word(of.visibility, &VISIBILITIES)),
+    ];
+    let options = PyDict::new(py);
+    for (name, value) in numbers {
+        value.map_or(Ok(()), |value| options.set_item(name, *value))?;
+    }
+    for (name, value) in shares {
+        value.map_or(Ok(()), |value| options.set_item(name, *value))?;
+    }
+    for (name, value) in switches {
+        value.map_or(Ok(()), |value| options.set_item(name, *value))?;
+    }
+    for (name, value) in words {
+        value.map_or(Ok(()), |value| options.set_item(name, value))?;
+    }
+    Ok(options)
 }
 
 /// Sets an option, if the filter has it.
@@ -93,22 +162,9 @@ fn set(filter: &mut basrelief::Filter, name: &str, value: &Bound<'_, PyAny>) -> 
         "cut" => put(of.cut, name, value),
         "texel_kernel" => put(of.texel_kernel, name, value),
         "samples" => put(of.samples, name, value),
-        "derivatives" => {
-            let choices = [("flat", Derivatives::Flat), ("relief", Derivatives::Relief)];
-            word(of.derivatives, name, value, &choices)
-        }
-        "formulas" => {
-            let choices = [("meant", Formulas::Meant), ("printed", Formulas::Printed)];
-            word(of.formulas, name, value, &choices)
-        }
-        "visible" => {
-            let choices = [
-                ("exact", Visibility::Exact),
-                ("two-ended", Visibility::TwoEnded),
-                ("resolved", Visibility::Resolved),
-            ];
-            word(of.visibility, name, value, &choices)
-        }
+        "derivatives" => word(of.derivatives, name, value, &DERIVATIVES),
+        "formulas" => word(of.formulas, name, value, &FORMULAS),
+        "visible" => word(of.visibility, name, value, &VISIBILITIES),
         _ => Ok(false),
     }
 }

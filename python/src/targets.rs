@@ -1,7 +1,7 @@
 //! The arrays that frames are drawn into: new ones, or the caller's.
 
 use crate::arguments::{mistyped, refused};
-use basrelief::layers::ValuesMut;
+use basrelief::layers::{PixelsMut, ValuesMut};
 use basrelief::{Layer, Renderer};
 use numpy::{
     Element, PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods, dtype,
@@ -183,7 +183,7 @@ impl Part<'_> {
 pub(crate) fn draw(renderer: &mut Renderer, parts: &mut [Part<'_>], i: usize) {
     let drawn = renderer.settings().drawn();
     let num_pixels = drawn.width as usize * drawn.height as usize;
-    let mut layers = Vec::new();
+    let (mut pictures, mut layers) = (Vec::new(), Vec::new());
     for part in parts {
         let Part { kind, values } = part.frame(i, num_pixels);
         match (kind, values) {
@@ -193,10 +193,18 @@ pub(crate) fn draw(renderer: &mut Renderer, parts: &mut [Part<'_>], i: usize) {
             (Kind::Layer(layer), Values::Floats(values)) => {
                 layers.push((layer, ValuesMut::Floats(values)));
             }
-            (_, Values::Bytes(values)) => renderer.render_to(values.as_chunks_mut::<4>().0),
-            (_, Values::Floats(values)) => renderer.render_to(values.as_chunks_mut::<4>().0),
+            (_, Values::Bytes(values)) => {
+                pictures.push(PixelsMut::Bytes(values.as_chunks_mut::<4>().0));
+            }
+            (_, Values::Floats(values)) => {
+                pictures.push(PixelsMut::Linear(values.as_chunks_mut::<4>().0));
+            }
             (_, Values::Ids(_)) => unreachable!("colours are no ids"),
         }
+    }
+    // Layers come with the first picture, for less than by themselves.
+    for pixels in pictures {
+        renderer.render_with_layers_to(pixels, std::mem::take(&mut layers));
     }
     if !layers.is_empty() {
         renderer.render_layers_to(layers);

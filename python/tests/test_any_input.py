@@ -65,7 +65,7 @@ def any_image(random, channels=None):
     channels = channels if channels is not None else [(), (3,), (4,)][random.integers(0, 3)]
     array = any_array(random, (*size, *channels))
     if random.random() < 0.5 and array.dtype.kind == "f":
-        with np.errstate(invalid="ignore"):
+        with np.errstate(all="ignore"):
             return (array * 99).astype("u1")
     return array
 

@@ -54,7 +54,7 @@ mod place;
 mod values;
 
 pub use layer::Layer;
-pub use values::{Layers, Values, ValuesMut};
+pub use values::{Layers, PixelsMut, Values, ValuesMut};
 
 #[cfg(doc)]
 use crate::{Renderer, Settings};

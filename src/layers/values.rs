@@ -89,6 +89,15 @@ pub enum ValuesMut<'a> {
     Ids(&'a mut [u32]),
 }
 
+/// The pixels of a picture in memory of the caller's, row by row from the top.
+#[derive(Debug)]
+pub enum PixelsMut<'a> {
+    /// sRGB with straight opacity.
+    Bytes(&'a mut [[u8; 4]]),
+    /// Linear light times its opacity.
+    Linear(&'a mut [[f32; 4]]),
+}
+
 impl ValuesMut<'_> {
     /// How many numbers there are.
     fn len(&self) -> usize {

@@ -2,12 +2,13 @@
 //! attributes where those are asked for. Nothing is shaded, and nothing is summed.
 
 use super::block::QuadBlock;
-use super::draw::{Drawn, Painter, Rasterizer};
+use super::draw::{Drawn, Painter, Rasterizer, Shade, rows_by_tile};
 use super::edge::Rect;
 use super::gather::gather;
 use super::grid::TileGrid;
 use super::scratch::Scratch;
 use super::tile::NONE;
+use crate::frame::{Development, Pixel};
 use crate::geometry::Geometry;
 use crate::simd::{PixelLanes, u32x8};
 use rayon::prelude::*;
@@ -33,17 +34,27 @@ pub struct CenterRow {
     triangles: u32x8,
 }
 
+/// What is asked of the centres of pixels.
+#[derive(Clone, Copy)]
+pub struct Centers<'a, T> {
+    /// What is drawn; `msaa` of its settings is 1.
+    pub drawn: Drawn<'a>,
+    /// Whether quads are listed.
+    pub has_quads: bool,
+    /// Takes what a tile sees, with the band of its row.
+    pub see: &'a (dyn Fn(&CenterTile, &mut T) + Sync),
+}
+
 impl Rasterizer {
-    /// Finds what the centres of pixels see, tile by tile, and hands it to `see`. `bands` has one
-    /// for each row of the [grid](TileGrid) of the settings, whose `msaa` must be 1. Quads are only
-    /// listed where `has_quads` asks for them.
+    /// Finds what the centres of pixels see, tile by tile. `bands` has one for each row of the
+    /// [grid](TileGrid) of the settings.
     pub fn see_centers<T: Send>(
         &mut self,
         geometry: &Geometry,
-        (drawn, has_quads): (Drawn, bool),
+        centers: Centers<T>,
         bands: &mut [T],
-        see: &(impl Fn(&CenterTile, &mut T) + Sync),
     ) {
+        let drawn = centers.drawn;
         let grid = TileGrid::new(drawn.settings);
         self.bins.fill(geometry, &grid);
         let clock = &|| 0.0;
@@ -54,7 +65,48 @@ impl Rasterizer {
             |scratch, (row, band)| {
                 let across = grid.num_tiles[0] as usize;
                 for tile in row * across..(row + 1) * across {
-                    painter.see_center_tile(tile, has_quads, scratch, &mut |tile| see(tile, band));
+                    scratch.list.clear();
+                    painter.bins.list(tile, &mut scratch.list);
+                    if !scratch.list.is_empty() {
+                        painter.see_samples::<1>(&grid.rect(tile), scratch);
+                        painter.see_tile(tile, &centers, (scratch, band));
+                    }
+                }
+            },
+        );
+    }
+
+    /// [`Self::draw`], and [`Self::see_centers`] of the same frame: a pixel's only sample is its
+    /// centre, so what tiles see is found once. Both are drawn by the same settings, but for what
+    /// attributes there are.
+    pub fn draw_and_see<P: Pixel, T: Send>(
+        &mut self,
+        geometry: &Geometry,
+        (drawn, shade): (Drawn, Shade),
+        pixels: &mut [P],
+        centers: Centers<T>,
+        bands: &mut [T],
+    ) {
+        let grid = TileGrid::new(drawn.settings);
+        self.bins.fill(geometry, &grid);
+        let clock = &|| 0.0;
+        let painter = Painter { geometry, drawn, grid, bins: &self.bins, clock };
+        let seer = Painter { drawn: centers.drawn, ..painter };
+        let development = Development::of(drawn.settings, P::IS_PICTURE);
+        let scratches = &self.scratches;
+        let mut rows = rows_by_tile(pixels, &grid);
+        let [tile_size, across] = [grid.tile_size, grid.num_tiles[0]].map(|num| num as usize);
+        let bands = bands.par_iter_mut().zip(rows.par_chunks_mut(across * tile_size));
+        bands.enumerate().for_each_init(
+            || scratches.take(),
+            |scratch, (row, (band, rows))| {
+                for (column, rows) in rows.chunks_mut(tile_size).enumerate() {
+                    let tile = row * across + column;
+                    painter.paint(tile, rows, scratch, (shade, &development));
+                    // What the tile's samples see stands in the scratch still.
+                    if !scratch.list.is_empty() {
+                        seer.see_tile(tile, &centers, (scratch, band));
+                    }
                 }
             },
         );
@@ -62,20 +114,14 @@ impl Rasterizer {
 }
 
 impl Painter<'_> {
-    fn see_center_tile(
+    /// Hands on what a tile's samples see, which has been found.
+    fn see_tile<T>(
         &self,
         tile: usize,
-        has_quads: bool,
-        scratch: &mut Scratch,
-        see: &mut dyn FnMut(&CenterTile),
+        &Centers { has_quads, see, .. }: &Centers<T>,
+        (scratch, band): (&mut Scratch, &mut T),
     ) {
-        scratch.list.clear();
-        self.bins.list(tile, &mut scratch.list);
-        if scratch.list.is_empty() {
-            return;
-        }
         let rect = self.grid.rect(tile);
-        self.see_samples::<1>(&rect, scratch);
         scratch.quads.clear();
         if has_quads {
             gather::<1>(&scratch.visibility, &mut scratch.quads);
@@ -83,7 +129,7 @@ impl Painter<'_> {
             // The stable sort keeps the order of places.
             scratch.quads.sort_by_key(|quad| quad.group);
         }
-        see(&CenterTile { rect, geometry: self.geometry, scratch });
+        see(&CenterTile { rect, geometry: self.geometry, scratch }, band);
     }
 }
 

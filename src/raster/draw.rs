@@ -94,16 +94,19 @@ pub struct Drawn<'a> {
     pub follow: Option<&'a dyn Follow>,
 }
 
+/// Appends the linear red, green and blue of eight pixels for each pair of a block; they must depend
+/// on that block only.
+pub type Shade<'a> = &'a (dyn Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync);
+
 impl Rasterizer {
     /// Draws the triangles of `geometry`, which must have been projected from `scene` under
-    /// `settings`. `shade` appends the linear red, green and blue of eight pixels for each pair of
-    /// a block, which must depend on that block only. `clock` gives milliseconds. The pixels, row by
-    /// row those of the [area](TileGrid::area) of the tiles, are overwritten.
+    /// `settings`. `clock` gives milliseconds. The pixels, row by row those of the
+    /// [area](TileGrid::area) of the tiles, are overwritten.
     pub fn draw<P: Pixel>(
         &mut self,
         geometry: &Geometry,
         drawn: Drawn,
-        shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
+        shade: Shade,
         clock: &(dyn Fn() -> f64 + Sync),
         pixels: &mut [P],
     ) -> RasterStats {
@@ -131,7 +134,7 @@ impl Rasterizer {
 
 /// The frame's rows cut into tiles: `tile_size` slices a tile, tile after tile; empty ones below
 /// the frame's last row.
-fn rows_by_tile<'a, P>(pixels: &'a mut [P], grid: &TileGrid) -> Vec<&'a mut [P]> {
+pub(super) fn rows_by_tile<'a, P>(pixels: &'a mut [P], grid: &TileGrid) -> Vec<&'a mut [P]> {
     let [width, height] = grid.area.size().map(|side| side as usize);
     assert_eq!(pixels.len(), width * height, "the pixels must be those of the tiles");
     let tile_size = grid.tile_size as usize;
@@ -162,15 +165,12 @@ pub(super) struct Painter<'a> {
 
 impl Painter<'_> {
     /// Draws a tile; gives what that took.
-    fn paint<P: Pixel>(
+    pub(super) fn paint<P: Pixel>(
         &self,
         tile: usize,
         rows: &mut [&mut [P]],
         scratch: &mut Scratch,
-        (shade, development): (
-            &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
-            &Development,
-        ),
+        (shade, development): (Shade, &Development),
     ) -> RasterStats {
         let rect = self.grid.rect(tile);
         scratch.list.clear();
@@ -275,12 +275,7 @@ impl Painter<'_> {
 
     /// Shades the quads block by block and adds their colours to the pixels; gives how many pixels
     /// that was.
-    fn shade_quads(
-        &self,
-        rect: &Rect,
-        scratch: &mut Scratch,
-        shade: &(impl Fn(&QuadBlock, &mut Vec<[PixelLanes; 3]>) + Sync),
-    ) -> u64 {
+    fn shade_quads(&self, rect: &Rect, scratch: &mut Scratch, shade: Shade) -> u64 {
         let Scratch { quads, planes, grounds, colors, canvas, .. } = scratch;
         // One over a power of two: shares of a pixel add up to 1 without rounding.
         let share = 1.0 / self.drawn.settings.msaa as f32;

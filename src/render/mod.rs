@@ -174,9 +174,10 @@ impl Renderer {
     /// What is drawn, with what is prepared of it, and the buffers that drawing fills.
     pub(crate) fn parts(
         &mut self,
-    ) -> (&Scene, &Settings, &PreparedScene, &mut Geometry, &mut Rasterizer) {
-        let Self { scene, settings, prepared, geometry, rasterizer, .. } = self;
-        (scene, settings, prepared, geometry, rasterizer)
+    ) -> (&Scene, &Settings, &PreparedScene, &Pool<ShadeScratch>, &mut Geometry, &mut Rasterizer)
+    {
+        let Self { scene, settings, prepared, pool, geometry, rasterizer } = self;
+        (scene, settings, prepared, pool, geometry, rasterizer)
     }
 
     /// Draws a frame on the threads of the current rayon pool.
@@ -184,6 +185,36 @@ impl Renderer {
         let mut frame = Frame::default();
         self.render_into(&mut frame);
         frame
+    }
+
+    /// A frame for each of `cameras`, drawn when it is asked for, so that there may be more of them
+    /// than memory holds.
+    ///
+    /// ```no_run
+    /// use basrelief::{Camera, Frame, Renderer, Settings, scene};
+    ///
+    /// let mut renderer = Renderer::new(scene::builtin(), Settings::default())?;
+    /// let first = renderer.scene().camera;
+    /// let along = (0..10_000).map(|i| Camera { eye: first.eye + 0.001 * i as f32, ..first });
+    /// for (i, frame) in renderer.frames(along).enumerate() {
+    ///     let frame: Frame<[u8; 4]> = frame?;
+    ///     frame.save(format!("{i:05}.png"))?;
+    /// }
+    /// # Ok::<(), basrelief::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Of each frame: names what is wrong with its camera.
+    pub fn frames<P: DrawnPixel>(
+        &mut self,
+        cameras: impl IntoIterator<Item = Camera>,
+    ) -> impl Iterator<Item = Result<Frame<P>>> {
+        cameras.into_iter().map(|camera| {
+            self.set_camera(camera)?;
+            let mut frame = Frame::default();
+            self.render_into(&mut frame);
+            Ok(frame)
+        })
     }
 
     /// Draws over a frame, whose memory is taken again where its size is right.

@@ -96,7 +96,7 @@ impl<'a> Shader<'a> {
     }
 
     /// Appends the linear colours of a block's pairs; those of helper lanes are anything.
-    pub(super) fn shade(&self, block: &QuadBlock, colors: &mut Colors) {
+    pub(crate) fn shade(&self, block: &QuadBlock, colors: &mut Colors) {
         let material = &self.scene.materials[block.material];
         let index = [block.material, block.group];
         let ground = self.prepared.ground(self.scene, self.settings, index);

@@ -62,6 +62,22 @@ impl Environment {
         Ok(picture)
     }
 
+    /// Texels across and down.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Linear RGB, row by row from the top.
+    pub fn texels(&self) -> &[Vec3] {
+        &self.texels
+    }
+
+    /// How far it is turned about up, in degrees, as it was given.
+    pub fn turn_degrees(&self) -> f32 {
+        // The errors of doubles are far below half a bit of a float.
+        (self.turn * 360.0) as f32
+    }
+
     /// A picture whose texels are asked for by the directions of their centres.
     #[cfg(test)]
     pub(super) fn from_fn(
