@@ -235,7 +235,7 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         if let (true, Shown::Light(light)) = (LIT, self.grid.shown) {
             let p = place * self.grid.step + self.grid.begin;
             let at = [self.others + self.xi, p, height];
-            let shown = light.at(steps.horizons[i], &between, at);
+            let shown = light.at(steps.horizons[i], &between, at, steps.q[i]);
             (0..3).for_each(|c| values[c] *= shown[c]);
         }
         Texels { values, place }

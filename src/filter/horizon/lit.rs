@@ -1,8 +1,9 @@
 //! The light of a patch of a curved surface: what shines on each texel that its lines see.
 //!
 //! Over a patch the frame of the surface turns a little. What its lights are at a seen place is
-//! taken for linear in the place, fitted to the patch's pixels; a texel shows the light of the
-//! polygon's point that it is seen over.
+//! taken for linear in the place, fitted to the patch's pixels; a texel shows the light of its own
+//! place, not that of the polygon's point that it is seen over: the surface has turned between the
+//! two. Points, which may be near, shine on where it is.
 
 use super::fit::{Fit, Linear, azimuth};
 use super::near_light::PatchPoint;
@@ -143,24 +144,26 @@ impl<'a> PatchLight<'a> {
         Self { rows, middle: fit.middle, suns, points, sky }
     }
 
-    /// What a white surface shows of the lights where lines cross a row whose words of horizons
-    /// begin at `start`, and have the stored heights `height`.
+    /// What a white surface shows of the lights where lines cross row `q`, whose words of horizons
+    /// begin at `start`, are seen over `p` and have the stored heights `height`.
     #[inline(always)]
     pub(super) fn at(
         &self,
         start: usize,
         between: &Between,
         [xi, p, height]: [LineLanes; 3],
+        q: f32,
     ) -> [LineLanes; 3] {
         let (words, stride) = (self.rows.words(), self.rows.stride());
         let [xi, p] = [xi - self.middle[0], p - self.middle[1]];
+        let q = LineLanes::splat(q - self.middle[1]);
         let mut sums = [LineLanes::ZERO; 3];
         let unit = 1.0 / (255.0 * BETWEEN_SCALE);
         let part = |word: [u32x16; 2], i: u32| between.bits_of(word, 8 * i, 0xff) * unit;
         let signed = |word: [u32x16; 2], i: u32| part(word, i) * 2.0 - 1.0;
         let normals = between.words_at(words, start + NORMAL_PLANE * stride);
         if let Some(sky) = &self.sky {
-            let gain = sky.gain.at(xi, p).fast_max(LineLanes::ZERO);
+            let gain = sky.gain.at(xi, q).fast_max(LineLanes::ZERO);
             let all = part(normals, 3) * gain;
             (0..3).for_each(|c| sums[c] = all * sky.constant[c]);
             if let Some(slopes) = &sky.slopes {
@@ -177,7 +180,7 @@ impl<'a> PatchLight<'a> {
         }
         let normal = [0, 1, 2].map(|i| signed(normals, i));
         for sun in &self.suns {
-            let [l0, l1, l2] = sun.to_light.map(|l| l.at(xi, p));
+            let [l0, l1, l2] = sun.to_light.map(|l| l.at(xi, q));
             let n_l = normal[0] * l0 + normal[1] * l1 + normal[2] * l2;
             // No cosine is above 1, whatever the fit makes of places beyond its pixels.
             let n_l = n_l.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
@@ -190,9 +193,9 @@ impl<'a> PatchLight<'a> {
             };
             let a = between.bits_of(word, shift, 0xff);
             let b = between.bits_of(next, next_shift, 0xff);
-            let part = sun.part.at(xi, p).fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
+            let part = sun.part.at(xi, q).fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
             let root = (a + (b - a) * part) * unit;
-            let lit = (sun.height.at(xi, p) - root * root) * sun.inverse_width + 0.5;
+            let lit = (sun.height.at(xi, q) - root * root) * sun.inverse_width + 0.5;
             let lit = n_l * lit.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
             (0..3).for_each(|c| sums[c] += lit * sun.intensity[c]);
         }
