@@ -2,7 +2,7 @@
 
 mod common;
 
-use basrelief::texture::{Surface, SurfaceMaps};
+use basrelief::texture::{HeightImage, Surface, SurfaceMaps};
 use basrelief::{
     Filter, Frame, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky, render,
 };
@@ -77,4 +77,24 @@ fn suns_keep_their_shadows_beside_points() {
     scene.lights.insert(0, Light::sun(Vec3::new(-0.45, 0.577, -0.9), Vec3::ONE));
     let found = decibels(&draw(&scene, Filter::default()), &draw(&scene, TRUTH), 1500.0);
     assert!(found > 35.0, "{found} dB");
+}
+
+/// What lies wholly within a relief hides points from what is deeper.
+#[test]
+fn what_lies_in_a_relief_hides_points_from_it() {
+    let pit = HeightImage::from_fn(16, 16, |_, _| 0.0);
+    let maps = SurfaceMaps { height: Some(pit), relief_depth: 0.1, ..cobbles(16, 1) };
+    let mut scene = floor(maps, Vec3::new(0.0, 2.0, 1.0));
+    let open = draw(&scene, Filter::default());
+    let corners = [[-0.5, 1.5], [0.5, 1.5], [0.5, 0.5], [-0.5, 0.5]];
+    let board = corners.map(|[x, z]| Vec3::new(x, -0.05, z)).to_vec();
+    let mut mesh = Mesh::new(board, vec![], vec![], vec![[0, 1, 2], [0, 2, 3]]);
+    mesh.material = 1;
+    scene.meshes.push(mesh);
+    scene.materials.push(Material { base_color: Vec3::ZERO, ..Material::default() });
+    let truth = draw(&scene, TRUTH);
+    let found = decibels(&draw(&scene, Filter::default()), &truth, 1000.0);
+    let lit = decibels(&open, &truth, 1000.0);
+    println!("{found} dB, {lit} without the board");
+    assert!(found > 25.0 && lit < 22.0, "{found} dB, {lit} without the board");
 }

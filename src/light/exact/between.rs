@@ -97,24 +97,28 @@ impl Receiver {
 
 impl Occluders {
     /// Whether a triangle may come between a receiver and a point: one that reaches into the box
-    /// around both, above the receiver's plane.
+    /// around both, above the receiver's plane, or below it where light enters it from the front.
     pub fn may_hide(&self, receiver: &Receiver, point: Vec3) -> bool {
         let to = point - receiver.middle;
         let (min, max) = (to.min(-receiver.half), to.max(receiver.half));
         let more = Vec3::splat((max - min).max_element() * ROUNDING);
-        let may = |from: Vec3, until: Vec3| {
+        let may = |from: Vec3, until: Vec3, is_front: bool| {
             let (from, until) = (from - receiver.middle, until - receiver.middle);
             let (middle, half) = ((from + until) * 0.5, (until - from) * 0.5);
-            let height = receiver.normal.dot(middle) + receiver.normal.abs().dot(half);
-            let distance = middle.length() + half.length();
+            let (height, reach) = (receiver.normal.dot(middle), receiver.normal.abs().dot(half));
+            let rounding = ROUNDING * (middle.length() + half.length());
             let is_flat = receiver.normal != Vec3::ZERO;
-            let is_above = height > receiver.top + ROUNDING * distance;
+            let is_above = height + reach > receiver.top + rounding;
+            let is_below = height - reach < receiver.top - rounding;
             let is_within = from.cmple(max + more).all() && until.cmpge(min - more).all();
-            is_within && (is_above || !is_flat)
+            is_within && (is_above || (is_below && is_front) || !is_flat)
         };
         self.any(
-            |node| may(node.min, node.max),
-            |[a, b, c]| may(a.min(*b).min(*c), a.max(*b).max(*c)),
+            |node| may(node.min, node.max, true),
+            |[a, b, c]| {
+                let is_front = (point - *a).dot((*b - *a).cross(*c - *a)) < 0.0;
+                may(a.min(*b).min(*c), a.max(*b).max(*c), is_front)
+            },
         )
     }
 
