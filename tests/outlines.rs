@@ -9,7 +9,7 @@ use basrelief::relief::{HeightField, ReliefPlace, march};
 use basrelief::shell::{Met, Shell, ViewRay};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
-use basrelief::{Filter, Frame, Layer, Mesh, Rays, Renderer, Scene, Settings};
+use basrelief::{Eye, Filter, Frame, Layer, Mesh, Rays, Renderer, Scene, Settings};
 use common::{Random, cobbles, floor_scene, rough_surface};
 use displaced::{
     ball_in_stones, decibels, depths_within, displaced, overlap, scene, show, sphere, torus,
@@ -187,6 +187,7 @@ fn rays_rise_from_a_ball_without_relief_to_meet() {
     let shell = Shell::new(&mesh, 0.1);
     assert!(shell.is_curved());
     let eye = DVec3::new(0.0, 0.0, 4.0);
+    let seen_from = Eye { place: eye.as_vec3(), share: 1.0 };
     let (mut num_hits, mut num_passed) = (0, 0);
     for (i, triangle) in mesh.triangles.iter().enumerate() {
         let middle = triangle.iter().fold(Vec3::ZERO, |sum, v| sum + mesh.positions[*v as usize]);
@@ -196,7 +197,7 @@ fn rays_rise_from_a_ball_without_relief_to_meet() {
         if front.dot(eye - middle) <= 0.0 {
             continue;
         }
-        let ray = ViewRay { eye, direction: middle - eye };
+        let ray = ViewRay { from: eye, direction: middle - eye };
         match shell.follow(&mesh, &field, i as u32, &ray) {
             Met::Relief(hit) => {
                 num_hits += 1;
@@ -208,7 +209,7 @@ fn rays_rise_from_a_ball_without_relief_to_meet() {
             Met::Nothing(distance) => {
                 num_passed += 1;
                 assert!(distance >= 1.0 - 1e-6, "out of it before its polygon");
-                assert!(shell.may_be_passed(&mesh, i as u32, eye.as_vec3()), "triangle {i}");
+                assert!(shell.may_be_passed(&mesh, i as u32, seen_from), "triangle {i}");
             }
             Met::Polygon => panic!("it has relief"),
         }

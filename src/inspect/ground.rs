@@ -124,9 +124,9 @@ fn nearest(geometry: &Geometry, pixel: [u32; 2]) -> Option<&ScreenTriangle> {
             is_inside |= row.mask.to_array()[(x - row.x) as usize] != 0;
         });
         let [dx, dy, constant] = triangle.depth;
-        let inverse_w = (x as f32 + 0.5) * dx + (y as f32 + 0.5) * dy + constant;
-        if is_inside && best.is_none_or(|(nearest, _)| inverse_w > nearest) {
-            best = Some((inverse_w, triangle));
+        let nearness = (x as f32 + 0.5) * dx + (y as f32 + 0.5) * dy + constant;
+        if is_inside && best.is_none_or(|(nearest, _)| nearness > nearest) {
+            best = Some((nearness, triangle));
         }
     }
     best.map(|(_, triangle)| triangle)

@@ -7,7 +7,7 @@ use super::sets::Sets;
 use crate::error::Result;
 use crate::filter::{LevelChoice, Prepared, Scratch};
 use crate::footprint::{Ellipse, Footprint, Footprints};
-use crate::geometry;
+use crate::geometry::{self, Projection};
 use crate::light::SurfacePoint;
 use crate::light::exact::{ExactLight, Hit};
 use crate::raster::{Drawn, Pool, QuadBlock, QuadPair, Rasterizer};
@@ -87,6 +87,7 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
     let asked = settings;
     let settings = Settings { msaa, lighting, ..settings.clone() };
     let pool = Pool::default();
+    let geometry = geometry::project(scene, &settings);
     let shader = Shader::new(scene, &settings, &prepared, None, &pool);
     let probe = Probe {
         scene,
@@ -96,6 +97,7 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
         asks_levels,
         prepared: &prepared,
         shader: &shader,
+        projection: geometry.projection(),
     };
     let pixels = Pixels::new(&settings);
     let shade = |block: &QuadBlock, colors: &mut Vec<[PixelLanes; 3]>| {
@@ -107,7 +109,6 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
         }
         colors.resize(colors.len() + block.num_pairs(), [PixelLanes::ZERO; 3]);
     };
-    let geometry = geometry::project(scene, &settings);
     let mut colors =
         vec![[0.0; 4]; settings.drawn().width as usize * settings.drawn().height as usize];
     let group = |triangle| prepared.group(scene, triangle);
@@ -168,6 +169,7 @@ struct Probe<'a> {
     asks_levels: bool,
     prepared: &'a PreparedScene,
     shader: &'a Shader<'a>,
+    projection: &'a Projection,
 }
 
 /// A pixel, and what frames read for it.
@@ -221,7 +223,7 @@ impl Probe<'_> {
     /// measured.
     fn of_plain(&self, pair: &QuadPair, material: &Material) -> [Option<[f32; 3]>; 8] {
         match self.view {
-            View::Depth => each_covered(pair, |lane| [distance(pair, lane), 0.0, 0.0]),
+            View::Depth => each_covered(pair, |lane| [self.depth(pair, lane, 0.0), 0.0, 0.0]),
             View::Normal => each_covered(pair, |lane| world(pair, lane, Texel::UP)),
             View::Shadow | View::Light | View::Occlusion => each_covered(pair, |lane| {
                 self.light(pair, lane, |point| plain_hit(material, point))
@@ -279,12 +281,9 @@ impl Probe<'_> {
                 [seen as f32 / all.max(1) as f32, all as f32, 0.0]
             }
             View::Depth => {
-                // The ray sinks by gamma repeats on its way from the eye, and on by the depth of
-                // the hit.
-                let [.., gamma] = pair.view().map(|lanes| lanes.as_array()[pixel.lane].abs());
                 let sunk =
                     prepared.field().map_or(0.0, |field| field.relief_depth * pixel.ray.hit_depth);
-                [distance(pair, pixel.lane) * (1.0 + sunk / gamma.max(f32::MIN_POSITIVE)), 0.0, 0.0]
+                [self.depth(pair, pixel.lane, sunk), 0.0, 0.0]
             }
             View::Normal => {
                 let [x, y] = pixel.texel(surface);
@@ -293,6 +292,18 @@ impl Probe<'_> {
             View::Uv => [pixel.ray.hit[0], pixel.ray.hit[1], 0.0],
             View::Coverage | View::Shadow | View::Light | View::Occlusion => [0.0; 3],
         }
+    }
+
+    /// Distance along the view to where a ray has sunk so many repeats below the polygon.
+    fn depth(&self, pair: &QuadPair, lane: usize, sunk: f32) -> f32 {
+        let ([x, y], planes) = (pair.centers(), pair.planes[lane / 4]);
+        let [a, b, c] = planes.nearness;
+        let polygon = self.projection.distance(x * a + y * b + PixelLanes::splat(c));
+        // Along its view it sinks by gamma repeats.
+        let [.., gamma] = pair.view();
+        let lengths =
+            PixelLanes::splat(sunk) / gamma.abs().max(PixelLanes::splat(f32::MIN_POSITIVE));
+        self.projection.behind(polygon, lengths).as_array()[lane]
     }
 }
 
@@ -303,13 +314,6 @@ fn each_covered(
     let mut values = [None; 8];
     pair.covered().for_each(|lane| values[lane] = Some(value(lane)));
     values
-}
-
-/// Distance along the view to the polygon.
-fn distance(pair: &QuadPair, lane: usize) -> f32 {
-    let [x, y] = pair.centers().map(|lanes| lanes.as_array()[lane]);
-    let [a, b, c] = pair.planes[lane / 4].inverse_w;
-    1.0 / (a * x + b * y + c)
 }
 
 /// A normal of the texture frame in world space, on the side that the eye sees.

@@ -24,7 +24,7 @@ use glam::Vec3;
 /// Most polygons that a ray is followed through; it then sees what it has met, or nothing.
 const MOST_POLYGONS: usize = 64;
 
-/// How much nearer than where a ray left a relief the polygon there may seem, as a share of 1 / w.
+/// How much nearer than where a ray left a relief the polygon there may seem, as a share of the distance.
 const ROUNDING: f32 = 1e-4;
 
 /// What a ray through a polygon meets.
@@ -45,7 +45,7 @@ pub trait Follow: Sync {
     /// Whether a triangle is seen from behind.
     fn is_seen_from_behind(&self, triangle: [u32; 2]) -> bool;
     /// The corners of a triangle where the relief of its mesh is deepest, along the view as the
-    /// [`Geometry`] has it: x, y and w. `None` without relief.
+    /// [`Geometry`] has it: x, y and the distance. `None` without relief.
     fn deepest(&self, triangle: [u32; 2]) -> Option<[Vec3; 3]>;
     /// Whether the ray through a place of the screen, in pixels, surely hits the relief of a triangle,
     /// and a distance along the view by which it has: quicker than to follow it.
@@ -83,9 +83,9 @@ pub(super) struct FollowScratch {
     /// Of each triangle of the list: twice its mesh, and one more if it is seen from behind.
     sides: Vec<u32>,
     may_be_passed: Vec<bool>,
-    /// Of each triangle of the list, 1 / w of its deepest relief.
+    /// Of each triangle of the list, the nearness of its deepest relief.
     pub(super) deepest: Vec<Option<Plane>>,
-    /// Of each sample, the least 1 / w of the relief that its polygon has, and the mesh.
+    /// Of each sample, the least nearness of the relief that its polygon has, and the mesh.
     pub(super) reaches: Vec<(f32x8, u32x8)>,
 }
 
@@ -105,11 +105,11 @@ impl Asked<'_> {
 }
 
 impl Followed {
-    /// A lane's ray meets, behind its next polygon, a surface at a distance along the view.
-    fn meet(&mut self, lane: usize, local: u32, w: f32) {
+    /// A lane's ray meets, behind its next polygon, so near a surface.
+    fn meet(&mut self, lane: usize, local: u32, nearness: f32) {
         let polygon = self.next.as_array()[lane];
         // Not before its polygon, whatever is rounded.
-        let depth = (1.0 / w).min(polygon);
+        let depth = nearness.min(polygon);
         if depth > self.best.as_array()[lane] {
             self.best.as_mut_array()[lane] = depth;
             self.best_triangle.as_mut_array()[lane] = local;
@@ -117,9 +117,9 @@ impl Followed {
         }
     }
 
-    /// What a lane's ray has met is at a distance along the view, nearer than its bound.
-    fn nearer(&mut self, lane: usize, w: f32) {
-        self.best.as_mut_array()[lane] = (1.0 / w).min(self.best_polygon.as_array()[lane]);
+    /// What a lane's ray has met is so near, nearer than its bound.
+    fn nearer(&mut self, lane: usize, nearness: f32) {
+        self.best.as_mut_array()[lane] = nearness.min(self.best_polygon.as_array()[lane]);
     }
 }
 
@@ -162,7 +162,7 @@ impl FollowScratch {
         let none = f32x8::splat(FARTHEST);
         let may_be_passed = &self.may_be_passed;
         self.samples.clear();
-        self.samples.extend(buffer.inverse_w.iter().zip(&buffer.triangles).map(
+        self.samples.extend(buffer.nearness.iter().zip(&buffer.triangles).map(
             |(depth, triangles)| {
                 let is_asked = u32x8::new(triangles.to_array().map(|local| {
                     if local != NONE && may_be_passed[local as usize] { u32::MAX } else { 0 }
@@ -187,6 +187,7 @@ impl FollowScratch {
     /// Follows the rays of the samples that are asked, each behind its next polygon.
     fn follow_all<const S: usize>(&mut self, buffer: &VisibilityBuffer, asked: &Asked) {
         let (sides, may_be_passed) = (&self.sides, &self.may_be_passed);
+        let nearness = |distance: f32| asked.geometry.projection().nearness(distance);
         for (at, samples) in self.samples.iter_mut().enumerate() {
             for lane in set_bits(samples.is_asked.to_bitmask()) {
                 let local = samples.triangle.as_array()[lane];
@@ -197,7 +198,7 @@ impl FollowScratch {
                 let probed = if is_probed { asked.follow.probe(triangle, place) } else { None };
                 if let Some(w) = probed {
                     samples.is_bound |= 1 << lane;
-                    samples.meet(lane, local, w);
+                    samples.meet(lane, local, nearness(w));
                     continue;
                 }
                 if samples.is_bound >> lane & 1 != 0 {
@@ -205,17 +206,17 @@ impl FollowScratch {
                     samples.is_bound &= !(1 << lane);
                     let best = samples.best_triangle.as_array()[lane] as usize;
                     if let Behind::Surface(w) = asked.follow.follow(asked.triangle(best), place) {
-                        samples.nearer(lane, w);
+                        samples.nearer(lane, nearness(w));
                     }
                     if samples.best.as_array()[lane] >= samples.next.as_array()[lane] {
                         continue;
                     }
                 }
                 match asked.follow.follow(triangle, place) {
-                    Behind::Surface(w) => samples.meet(lane, local, w),
+                    Behind::Surface(w) => samples.meet(lane, local, nearness(w)),
                     Behind::Nothing(w) => {
                         samples.passed.as_mut_array()[lane] = sides[local as usize] ^ 1;
-                        samples.passed_at.as_mut_array()[lane] = (1.0 / w) * (1.0 - ROUNDING);
+                        samples.passed_at.as_mut_array()[lane] = nearness(w * (1.0 + ROUNDING));
                     }
                 }
             }
@@ -242,14 +243,14 @@ impl FollowScratch {
             let samples = &mut self.samples;
             let around = bounds(triangle, rect, offset_bounds(S as u32));
             cover::<S>(triangle, &around, &mut |row: Row| {
-                let (at, inverse_w) = buffer.row::<S>(&row, triangle.depth);
+                let (at, nearness) = buffer.row::<S>(&row, triangle.depth);
                 let samples = &mut samples[at];
-                let is_within = inverse_w.simd_lt(samples.last) & inverse_w.simd_gt(samples.next);
+                let is_within = nearness.simd_lt(samples.last) & nearness.simd_gt(samples.next);
                 let is_passed =
-                    samples.passed.simd_eq(side) & inverse_w.simd_ge(samples.passed_at).to_bits();
+                    samples.passed.simd_eq(side) & nearness.simd_ge(samples.passed_at).to_bits();
                 let is_next =
                     is_within.to_bits() & row.mask.cast_unsigned() & samples.is_asked & !is_passed;
-                samples.next = f32x8::from_bits(is_next).bitselect(inverse_w, samples.next);
+                samples.next = f32x8::from_bits(is_next).bitselect(nearness, samples.next);
                 samples.triangle = is_next.bitselect(local, samples.triangle);
             });
         }
@@ -264,7 +265,7 @@ impl FollowScratch {
 
     /// Makes the buffer see what was found.
     fn end(&self, buffer: &mut VisibilityBuffer) {
-        let seen = buffer.triangles.iter_mut().zip(&mut buffer.inverse_w);
+        let seen = buffer.triangles.iter_mut().zip(&mut buffer.nearness);
         for ((triangles, depth), samples) in seen.zip(&self.samples) {
             let Followed { is_followed, best_triangle, best_polygon, .. } = *samples;
             *triangles = is_followed.bitselect(best_triangle, *triangles);

@@ -4,7 +4,7 @@ use crate::geometry::Projection;
 use crate::light::SurfacePoint;
 use crate::raster::Behind;
 use crate::relief::HeightField;
-use crate::scene::Scene;
+use crate::scene::{Eye, Scene};
 use crate::shell::{Met, ReliefHit, Shell, ViewRay};
 use crate::simd::{PixelLanes, set_bits};
 use glam::{DVec3, Vec3};
@@ -13,6 +13,7 @@ use glam::{DVec3, Vec3};
 pub(crate) struct Outlines<'a> {
     scene: &'a Scene,
     projection: &'a Projection,
+    eye: Eye,
     /// Of each mesh that has any.
     reliefs: Vec<Option<Relief<'a>>>,
 }
@@ -30,7 +31,8 @@ impl<'a> Outlines<'a> {
     ) -> Option<Self> {
         let is_asked = |(shell, _): &Relief| scene.meshes.len() > 1 || shell.is_curved();
         let has_any = reliefs.iter().flatten().any(is_asked);
-        has_any.then_some(Self { scene, projection, reliefs })
+        let eye = scene.camera.viewpoint();
+        has_any.then_some(Self { scene, projection, eye, reliefs })
     }
 
     /// Whether a mesh has a relief that is curved: followed rays then find what straight ones do not.
@@ -83,8 +85,8 @@ impl<'a> Outlines<'a> {
     fn walk<const PROBES: bool>(&self, [mesh, triangle]: [u32; 2], place: [f64; 2]) -> Met {
         let Some((shell, field)) = self.reliefs[mesh as usize] else { return Met::Polygon };
         let mesh = &self.scene.meshes[mesh as usize];
-        let eye = self.scene.camera.eye.as_dvec3();
-        let ray = ViewRay { eye, direction: self.projection.direction(place) };
+        let (from, direction) = (self.projection.origin(place), self.projection.direction(place));
+        let ray = ViewRay { from, direction };
         if PROBES {
             shell.probe(mesh, field, triangle, &ray)
         } else {
@@ -101,7 +103,7 @@ impl<'a> Outlines<'a> {
     pub(super) fn may_be_passed(&self, [mesh, triangle]: [u32; 2]) -> bool {
         self.reliefs[mesh as usize].is_some_and(|(shell, _)| {
             let mesh = &self.scene.meshes[mesh as usize];
-            shell.may_be_passed(mesh, triangle, self.scene.camera.eye)
+            shell.may_be_passed(mesh, triangle, self.eye)
         })
     }
 
@@ -109,7 +111,7 @@ impl<'a> Outlines<'a> {
     pub(super) fn deepest(&self, [mesh, triangle]: [u32; 2]) -> Option<[Vec3; 3]> {
         let (shell, _) = self.reliefs[mesh as usize]?;
         let mesh = &self.scene.meshes[mesh as usize];
-        let corners = shell.deepest(mesh, triangle, self.scene.camera.eye);
+        let corners = shell.deepest(mesh, triangle, self.eye);
         Some(corners.map(|corner| self.projection.view(corner)))
     }
 

@@ -3,7 +3,7 @@
 use super::outlines::Outlines;
 use crate::geometry::Projection;
 use crate::raster::{Behind, Follow};
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Eye, Mesh, Scene};
 use crate::shell::is_seen_from_behind;
 use glam::{DVec2, DVec3, Vec3};
 
@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3, Vec3};
 pub(crate) struct Passages<'a> {
     scene: &'a Scene,
     projection: &'a Projection,
+    eye: Eye,
     outlines: Option<&'a Outlines<'a>>,
 }
 
@@ -22,7 +23,7 @@ impl<'a> Passages<'a> {
         projection: &'a Projection,
         outlines: Option<&'a Outlines<'a>>,
     ) -> Option<Self> {
-        let all = Self { scene, projection, outlines };
+        let all = Self { scene, projection, eye: scene.camera.viewpoint(), outlines };
         let has_holes = scene.meshes.iter().any(|mesh| scene.cut_out(mesh).is_some());
         (outlines.is_some() || has_holes).then_some(all)
     }
@@ -58,7 +59,7 @@ impl<'a> Passages<'a> {
         place: [f64; 2],
     ) -> Option<(DVec2, f64)> {
         let [a, b, c] = corners.map(|i| mesh.positions[i].as_dvec3());
-        let [ab, ac, from] = [b - a, c - a, self.scene.camera.eye.as_dvec3() - a];
+        let [ab, ac, from] = [b - a, c - a, self.projection.origin(place) - a];
         let direction: DVec3 = self.projection.direction(place);
         // Shares of the corners by Cramer's rule.
         let across = direction.cross(ac);
@@ -95,7 +96,7 @@ impl Follow for Passages<'_> {
     }
 
     fn is_seen_from_behind(&self, [mesh, triangle]: [u32; 2]) -> bool {
-        is_seen_from_behind(&self.scene.meshes[mesh as usize], triangle, self.scene.camera.eye)
+        is_seen_from_behind(&self.scene.meshes[mesh as usize], triangle, self.eye)
     }
 
     fn deepest(&self, triangle: [u32; 2]) -> Option<[Vec3; 3]> {

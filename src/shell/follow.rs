@@ -25,7 +25,7 @@ const MOST_PIECES: f64 = 16.0;
 #[derive(Clone, Copy, Debug)]
 pub struct ViewRay {
     /// Where it begins.
-    pub eye: DVec3,
+    pub from: DVec3,
     /// Where it goes, of any length; distances are counted in it.
     pub direction: DVec3,
 }
@@ -190,7 +190,7 @@ impl Walk<'_> {
         let bend = (bend / offsets[0].length_squared().max(f64::MIN_POSITIVE)).sqrt();
         Prism {
             triangle,
-            p: corners.map(|i| across(mesh.positions[i].as_dvec3() - ray.eye)),
+            p: corners.map(|i| across(mesh.positions[i].as_dvec3() - ray.from)),
             o: offsets.map(across),
             num_pieces: (bend / STRAIGHT).ceil().clamp(1.0, MOST_PIECES) as u32,
         }
@@ -253,7 +253,7 @@ impl Walk<'_> {
     /// How far from the eye a point is.
     fn distance(&self, prism: &Prism, at: &Point) -> f64 {
         let corners = self.mesh.triangles[prism.triangle as usize].map(|i| i as usize);
-        let mut place = -self.ray.eye;
+        let mut place = -self.ray.from;
         for (i, share) in corners.into_iter().zip(at.shares) {
             let down = self.shell.offsets[i].as_dvec3() * (at.place.depth * self.side);
             place += (self.mesh.positions[i].as_dvec3() + down) * share;
@@ -264,7 +264,7 @@ impl Walk<'_> {
     /// How far from the eye the first corner of a triangle is.
     fn distance_of(&self, triangle: u32) -> f64 {
         let corner = self.mesh.triangles[triangle as usize][0] as usize;
-        let from_eye = self.mesh.positions[corner].as_dvec3() - self.ray.eye;
+        let from_eye = self.mesh.positions[corner].as_dvec3() - self.ray.from;
         from_eye.dot(self.ray.direction) / self.ray.direction.length_squared()
     }
 }

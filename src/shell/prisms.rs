@@ -1,7 +1,7 @@
 //! What is known of a mesh with relief before a ray comes.
 
 use super::{curvature, neighbors};
-use crate::scene::Mesh;
+use crate::scene::{Eye, Mesh};
 use glam::Vec3;
 
 /// The prisms of a mesh's relief.
@@ -39,13 +39,13 @@ impl Shell {
     }
 
     /// Whether a ray from the eye through a triangle may pass its relief.
-    pub fn may_be_passed(&self, mesh: &Mesh, triangle: u32, eye: Vec3) -> bool {
+    pub fn may_be_passed(&self, mesh: &Mesh, triangle: u32, eye: Eye) -> bool {
         let limits = self.limits[triangle as usize];
         if limits == [0.0; 2] {
             return false;
         }
         let cosines = mesh.triangles[triangle as usize].map(|i| {
-            let to_eye = (eye - mesh.positions[i as usize]).normalize_or_zero();
+            let to_eye = eye.seen_from(mesh.positions[i as usize]).normalize_or_zero();
             to_eye.dot(mesh.normals[i as usize])
         });
         let [least, most] =
@@ -60,7 +60,7 @@ impl Shell {
     }
 
     /// Where the corners of a triangle have their deepest relief, as it is seen from the eye.
-    pub fn deepest(&self, mesh: &Mesh, triangle: u32, eye: Vec3) -> [Vec3; 3] {
+    pub fn deepest(&self, mesh: &Mesh, triangle: u32, eye: Eye) -> [Vec3; 3] {
         let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
         let side = if is_seen_from_behind(mesh, triangle, eye) { -1.0 } else { 1.0 };
         corners.map(|i| mesh.positions[i] + self.offsets[i] * side)
@@ -68,8 +68,8 @@ impl Shell {
 }
 
 /// Whether a triangle of a mesh is seen from behind.
-pub fn is_seen_from_behind(mesh: &Mesh, triangle: u32, eye: Vec3) -> bool {
+pub fn is_seen_from_behind(mesh: &Mesh, triangle: u32, eye: Eye) -> bool {
     let [a, b, c] =
         mesh.triangles[triangle as usize].map(|i| mesh.positions[i as usize].as_dvec3());
-    (b - a).cross(c - a).dot(eye.as_dvec3() - a) < 0.0
+    (b - a).cross(c - a).dot(eye.seen_from_exact(a)) < 0.0
 }
