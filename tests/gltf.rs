@@ -563,7 +563,7 @@ fn broken_files_are_refused_by_one_line_that_says_where() {
 #[test]
 fn orthographic_cameras_have_the_height_of_the_file() {
     let rest = r#","cameras":[{"type":"orthographic","orthographic":
-        {"xmag":3,"ymag":1.5,"znear":0,"zfar":10}}]}"#;
+        {"xmag":3,"ymag":1.5,"znear":0,"zfar":10}}]"#;
     let nodes = r#"[{"mesh":0},{"camera":0,"translation":[0,0,4]}]"#;
     let scene = square("{}", rest)
         .replace(r#""nodes":[0]"#, r#""nodes":[0,1]"#)

@@ -70,7 +70,7 @@ impl Hits<'_> {
             if let Some(field) = field {
                 trace(&block, (field, self.projection), &mut hits);
                 if let Some(outlines) = self.outlines {
-                    follow(&block, outlines, &mut hits);
+                    follow(&block, (outlines, tile), &mut hits);
                 }
             }
             let material = &self.scene.materials[block.material];
@@ -170,8 +170,9 @@ fn trace(
 }
 
 /// Follows the rays of a block's pairs that see curved meshes.
-fn follow(block: &QuadBlock, outlines: &Outlines, hits: &mut [PairHits]) {
+fn follow(block: &QuadBlock, (outlines, tile): (&Outlines, &CenterTile), hits: &mut [PairHits]) {
     for (pair, hits) in block.pairs().zip(hits) {
+        let polygon = tile.distances(&pair);
         for lane in pair.covered() {
             let triangle = pair.planes[lane / 4].triangle;
             if !outlines.is_curved(triangle[0]) {
@@ -181,8 +182,8 @@ fn follow(block: &QuadBlock, outlines: &Outlines, hits: &mut [PairHits]) {
             // Where rounding lets a ray pass after all, the polygon's own frame serves.
             let Met::Relief(hit) = outlines.met(triangle, place) else { continue };
             (0..2).for_each(|i| hits.uv[i].as_mut_array()[lane] = hit.place.uv[i] as f32);
-            let distance = &mut hits.distance.as_mut_array()[lane];
-            *distance = distance.max(hit.distance as f32);
+            let distance = polygon.as_array()[lane].max(hit.distance as f32);
+            hits.distance.as_mut_array()[lane] = distance;
         }
     }
 }
