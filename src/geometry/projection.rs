@@ -178,6 +178,12 @@ impl Projection {
         if self.is_orthographic() { distance + lengths } else { distance * (lengths + 1.0) }
     }
 
+    /// How large a pixel is in the world, at most: at the eye, and more for each distance along the view.
+    pub fn pixel_size(&self) -> [f64; 2] {
+        let size = 1.0 / self.focal[0].min(self.focal[1]);
+        if self.is_orthographic() { [size, 0.0] } else { [0.0, size] }
+    }
+
     /// View space of a world position: x and y in pixels times world units, or in pixels, and the
     /// distance along the view.
     pub fn view(&self, position: Vec3) -> Vec3 {
@@ -199,7 +205,7 @@ impl Projection {
 
     /// Eight world positions from the eye, world units.
     #[inline]
-    pub(crate) fn from_eye(&self, position: [f64x8; 3]) -> [f64x8; 3] {
+    pub(crate) fn as_seen(&self, position: [f64x8; 3]) -> [f64x8; 3] {
         std::array::from_fn(|i| position[i] - f64x8::splat(f64::from(self.eye[i])))
     }
 

@@ -83,7 +83,7 @@ impl<'a> PlaneMaker<'a> {
         // Set up the planes from the corners before clipping and snapping, in f64: pieces of a
         // triangle then share them.
         let from_eye = vectors(corners, |mesh, i| mesh.positions[i])
-            .map(|position| self.projection.from_eye(position));
+            .map(|position| self.projection.as_seen(position));
         let views = from_eye.map(|position| self.projection.views(position));
         let basis = BasisLanes::new(views, &self.projection.lens);
         let (inverse_w, nearness) = (basis.inverse_w(), basis.nearness());

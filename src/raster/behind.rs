@@ -40,16 +40,19 @@ pub enum Behind {
 pub trait Follow: Sync {
     /// Whether a mesh has relief.
     fn has_relief(&self, mesh: u32) -> bool;
-    /// Whether a ray from the eye may pass the relief of a triangle.
-    fn may_be_passed(&self, triangle: [u32; 2]) -> bool;
+    /// Where on the screen rays from the eye may pass the relief of a triangle: where this is below 0;
+    /// `None` where none may.
+    fn passable(&self, triangle: [u32; 2]) -> Option<Plane>;
     /// Whether a triangle is seen from behind.
     fn is_seen_from_behind(&self, triangle: [u32; 2]) -> bool;
     /// The corners of a triangle where the relief of its mesh is deepest, along the view as the
     /// [`Geometry`] has it: x, y and the distance. `None` without relief.
     fn deepest(&self, triangle: [u32; 2]) -> Option<[Vec3; 3]>;
     /// Whether the ray through a place of the screen, in pixels, surely hits the relief of a triangle,
-    /// and a distance along the view by which it has: quicker than to follow it.
-    fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32>;
+    /// and a distance along the view by which it has: quicker than to follow it. The same holds of all
+    /// rays that are no farther than so many pixels `around` it, and enter the relief of the mesh before
+    /// that distance.
+    fn probe(&self, triangle: [u32; 2], place: [f64; 2], around: f64) -> Option<f32>;
     /// What the ray through a place of the screen, in pixels, meets behind a triangle.
     fn follow(&self, triangle: [u32; 2], place: [f64; 2]) -> Behind;
 }
@@ -62,14 +65,16 @@ pub(super) struct Followed {
     pub(super) is_asked: u32x8,
     /// Depth of the polygon that was asked last, and of the next one with its local index.
     last: f32x8,
-    next: f32x8,
-    triangle: u32x8,
+    pub(super) next: f32x8,
+    pub(super) triangle: u32x8,
     /// The nearest that was met so far, with the polygon before it.
     best: f32x8,
     best_triangle: u32x8,
     best_polygon: f32x8,
     /// A bit for each where what was met may be nearer than that.
-    is_bound: u8,
+    pub(super) is_bound: u8,
+    /// A bit for each that has met something before its polygon was asked.
+    pub(super) has_met: u8,
     /// The side of a mesh by which a ray came out of it last, and where: up to there that side is
     /// within the shell that the ray passed, and is not seen.
     passed: u32x8,
@@ -82,7 +87,8 @@ pub(super) struct FollowScratch {
     pub(super) samples: Vec<Followed>,
     /// Of each triangle of the list: twice its mesh, and one more if it is seen from behind.
     sides: Vec<u32>,
-    may_be_passed: Vec<bool>,
+    /// Of each triangle of the list, [`Follow::passable`].
+    pub(super) passable: Vec<Option<Plane>>,
     /// Of each triangle of the list, the nearness of its deepest relief.
     pub(super) deepest: Vec<Option<Plane>>,
     /// Of each sample, the least nearness of the relief that its polygon has, and the mesh.
@@ -106,7 +112,7 @@ impl Asked<'_> {
 
 impl Followed {
     /// A lane's ray meets, behind its next polygon, so near a surface.
-    fn meet(&mut self, lane: usize, local: u32, nearness: f32) {
+    pub(super) fn meet(&mut self, lane: usize, local: u32, nearness: f32) {
         let polygon = self.next.as_array()[lane];
         // Not before its polygon, whatever is rounded.
         let depth = nearness.min(polygon);
@@ -127,16 +133,15 @@ impl FollowScratch {
     /// Makes samples of the tile see what their rays meet. Depths stay those of polygons.
     pub(super) fn find<const S: usize>(&mut self, buffer: &mut VisibilityBuffer, asked: &Asked) {
         let all = 0..asked.list.len();
-        self.may_be_passed.clear();
-        self.may_be_passed
-            .extend(all.clone().map(|local| asked.follow.may_be_passed(asked.triangle(local))));
+        self.passable.clear();
+        self.passable.extend(all.clone().map(|local| asked.follow.passable(asked.triangle(local))));
         let first_mesh = asked.triangle(0)[0];
         let has_several = all.clone().any(|local| asked.triangle(local)[0] != first_mesh)
             && all.clone().any(|local| asked.follow.has_relief(asked.triangle(local)[0]));
-        if !has_several && !self.may_be_passed.contains(&true) {
+        if !has_several && self.passable.iter().all(Option::is_none) {
             return;
         }
-        self.begin(buffer);
+        self.begin::<S>(buffer);
         if has_several {
             self.ask_contacts::<S>(buffer, asked);
         }
@@ -148,6 +153,7 @@ impl FollowScratch {
             let triangle = asked.triangle(local);
             2 * triangle[0] + u32::from(asked.follow.is_seen_from_behind(triangle))
         }));
+        self.probe_together::<S>(buffer, asked);
         for _ in 0..MOST_POLYGONS {
             self.follow_all::<S>(buffer, asked);
             if !self.next_polygons::<S>(buffer, asked) {
@@ -157,45 +163,54 @@ impl FollowScratch {
         self.end(buffer);
     }
 
-    /// Asks for samples whose polygon may be passed.
-    fn begin(&mut self, buffer: &VisibilityBuffer) {
+    /// Asks for samples whose rays may pass their polygon.
+    fn begin<const S: usize>(&mut self, buffer: &VisibilityBuffer) {
         let none = f32x8::splat(FARTHEST);
-        let may_be_passed = &self.may_be_passed;
+        let passable = &self.passable;
+        let seen = buffer.nearness.iter().zip(&buffer.triangles).enumerate();
         self.samples.clear();
-        self.samples.extend(buffer.nearness.iter().zip(&buffer.triangles).map(
-            |(depth, triangles)| {
-                let is_asked = u32x8::new(triangles.to_array().map(|local| {
-                    if local != NONE && may_be_passed[local as usize] { u32::MAX } else { 0 }
-                }));
-                Followed {
-                    is_followed: is_asked,
-                    is_asked,
-                    last: *depth,
-                    next: *depth,
-                    triangle: *triangles,
-                    best: none,
-                    best_triangle: u32x8::splat(NONE),
-                    best_polygon: none,
-                    is_bound: 0,
-                    passed: u32x8::splat(NONE),
-                    passed_at: none,
-                }
-            },
-        ));
+        self.samples.extend(seen.map(|(at, (depth, triangles))| {
+            let [x, y] = buffer.place::<S>(at, 0).map(|c| c as f32);
+            let mut is_asked = [0; 8];
+            for (lane, local) in triangles.to_array().into_iter().enumerate() {
+                let Some([a, b, c]) = passable.get(local as usize).copied().flatten() else {
+                    continue;
+                };
+                let may_pass = a * (x + lane as f32) + b * y + c < 0.0;
+                is_asked[lane] = if may_pass { u32::MAX } else { 0 };
+            }
+            let is_asked = u32x8::new(is_asked);
+            Followed {
+                is_followed: is_asked,
+                is_asked,
+                last: *depth,
+                next: *depth,
+                triangle: *triangles,
+                best: none,
+                best_triangle: u32x8::splat(NONE),
+                best_polygon: none,
+                is_bound: 0,
+                has_met: 0,
+                passed: u32x8::splat(NONE),
+                passed_at: none,
+            }
+        }));
     }
 
     /// Follows the rays of the samples that are asked, each behind its next polygon.
     fn follow_all<const S: usize>(&mut self, buffer: &VisibilityBuffer, asked: &Asked) {
-        let (sides, may_be_passed) = (&self.sides, &self.may_be_passed);
+        let (sides, passable) = (&self.sides, &self.passable);
         let nearness = |distance: f32| asked.geometry.projection().nearness(distance);
         for (at, samples) in self.samples.iter_mut().enumerate() {
-            for lane in set_bits(samples.is_asked.to_bitmask()) {
+            let has_met = u32::from(std::mem::take(&mut samples.has_met));
+            for lane in set_bits(samples.is_asked.to_bitmask() & !has_met) {
                 let local = samples.triangle.as_array()[lane];
                 let (triangle, place) =
                     (asked.triangle(local as usize), buffer.place::<S>(at, lane));
                 let is_first = samples.best_triangle.as_array()[lane] == NONE;
-                let is_probed = is_first && may_be_passed[local as usize];
-                let probed = if is_probed { asked.follow.probe(triangle, place) } else { None };
+                let is_probed = is_first && passable[local as usize].is_some();
+                let probed =
+                    if is_probed { asked.follow.probe(triangle, place, 0.0) } else { None };
                 if let Some(w) = probed {
                     samples.is_bound |= 1 << lane;
                     samples.meet(lane, local, nearness(w));

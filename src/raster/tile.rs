@@ -147,10 +147,16 @@ impl VisibilityBuffer {
 
     /// Where on the screen, in pixels, a lane of the samples lies that are kept at an index.
     pub(super) fn place<const S: usize>(&self, at: usize, lane: usize) -> [f64; 2] {
+        let offset = sample_offsets(S as u32)[at / self.num_columns / self.num_rows];
+        let corner = self.corner(at, lane);
+        [0, 1].map(|i| corner[i] + f64::from(offset[i]) / 256.0)
+    }
+
+    /// The upper left corner of that lane's pixel.
+    pub(super) fn corner(&self, at: usize, lane: usize) -> [f64; 2] {
         let (row, column) = (at / self.num_columns, at % self.num_columns);
-        let offset = sample_offsets(S as u32)[row / self.num_rows];
         let pixel = [8 * column + lane, row % self.num_rows];
-        [0, 1].map(|i| f64::from(self.origin[i]) + pixel[i] as f64 + f64::from(offset[i]) / 256.0)
+        [0, 1].map(|i| f64::from(self.origin[i]) + pixel[i] as f64)
     }
 
     /// Keeps the nearer of what is stored and what is drawn.
