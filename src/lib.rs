@@ -189,8 +189,8 @@ pub use frame::Frame;
 pub use layers::{Layer, Layers};
 pub use render::{DrawnPixel, Renderer, Stats, render};
 pub use scene::{
-    Camera, CutOut, Environment, Intrinsics, Light, Material, MaterialMaps, Mesh, PoseAxes, Scene,
-    Sky,
+    Camera, CutOut, Environment, Eye, Intrinsics, Light, Material, MaterialMaps, Mesh, PoseAxes,
+    Scene, Sky,
 };
 pub use settings::{
     Derivatives, Ewa, Filter, Formulas, Horizon, Lighting, OptionsMut, RECONSTRUCTION, Rays,

@@ -1,12 +1,13 @@
 //! Cut-outs: what is seen through holes, and how much of a surface stays with distance.
 
-use basrelief::load::{LoadOptions, load};
-use basrelief::texture::{GrayImage, Surface, SurfaceMaps, Texture, Wrap};
+use basrelief::load::{LoadOptions, MaterialOptions, load};
+use basrelief::texture::{GrayImage, HeightImage, Surface, SurfaceMaps, Texture, Wrap};
 use basrelief::{
     Camera, CutOut, Layer, Light, Lighting, Material, Mesh, Renderer, Scene, Settings, Sky, render,
 };
 use glam::{Vec2, Vec3};
 use std::fs;
+use std::sync::Arc;
 
 /// A square of side 2 around `middle`, with the axes of its sides.
 fn square(material: usize, middle: Vec3, [u, v]: [Vec3; 2], repeats: f32) -> Mesh {
@@ -122,9 +123,20 @@ fn mtl_files_name_opacity() {
     let gray = image::GrayImage::from_fn(8, 8, |x, _| image::Luma([if x < 4 { 255 } else { 0 }]));
     gray.save(folder.path().join("g.png")).expect("saved");
     let load = || load(&folder.path().join("s.obj"), &LoadOptions::default()).expect("loaded");
-    for (lines, has_holes) in
-        [("map_d a.png", true), ("map_d g.png", true), ("map_Kd a.png", false), ("d 0.3", false)]
-    {
+    let opaque = |alpha: u8| image::RgbaImage::from_pixel(8, 8, image::Rgba([9, 9, 9, alpha]));
+    opaque(200).save(folder.path().join("full.png")).expect("saved");
+    opaque(0).save(folder.path().join("none.png")).expect("saved");
+    for (lines, has_holes) in [
+        ("map_d a.png", true),
+        ("map_d g.png", true),
+        ("map_Kd a.png", true),
+        ("map_Kd a.png\nmap_d full.png", false),
+        ("map_Kd g.png", false),
+        ("map_Kd full.png", false),
+        // Opacity that is not meant.
+        ("map_Kd none.png", false),
+        ("d 0.3", false),
+    ] {
         write("s.mtl", &format!("newmtl m\n{lines}\n"));
         let loaded = load();
         let cut_out = &loaded.scene.materials[0].cut_out;
@@ -135,4 +147,44 @@ fn mtl_files_name_opacity() {
         }
         assert_eq!(loaded.warnings.len(), usize::from(lines == "d 0.3"), "{:?}", loaded.warnings);
     }
+    write("s.mtl", "newmtl m\nmap_Kd a.png\n");
+    let solid = MaterialOptions { cut_out: Some(false), ..MaterialOptions::default() };
+    let all = LoadOptions { all: solid.clone(), ..LoadOptions::default() };
+    let materials = [("m".into(), solid)].into();
+    let one = LoadOptions { materials, ..LoadOptions::default() };
+    for options in [all, one] {
+        let loaded = basrelief::load::load(&folder.path().join("s.obj"), &options).expect("loaded");
+        assert!(loaded.scene.materials[0].cut_out.is_none());
+    }
+}
+
+/// A relief that is deepest all over is a flat square below, holes and all.
+#[test]
+fn holes_of_a_relief_are_where_rays_hit_it() {
+    let height = HeightImage::from_fn(8, 8, |_, _| 0.0);
+    let maps = SurfaceMaps { height: Some(height), relief_depth: 0.2, ..Default::default() };
+    let relief = Surface::new(maps).expect("a surface").into();
+    let stripes = |x: u32, _: u32| if x / 10 % 2 == 0 { 1.0 } else { 0.0 };
+    let camera = Camera { eye: Vec3::new(1.6, 0.0, 1.5), ..front(1.0) };
+    let drawn = |material: Material, middle: Vec3, silhouette: bool| {
+        let meshes = vec![square(0, middle, [Vec3::X, Vec3::Y], 1.0)];
+        let scene = Scene { meshes, materials: vec![material], camera, ..Scene::default() };
+        let settings = Settings { silhouette, ..settings() };
+        let mut renderer = Renderer::new(scene, settings).expect("a scene");
+        renderer.render_layers(&[Layer::Object]).ids(Layer::Object).to_vec()
+    };
+    let solid = |silhouette: bool| {
+        let material = Material { surface: Some(Arc::clone(&relief)), ..cut(Vec3::ONE, stripes) };
+        drawn(material, Vec3::ZERO, silhouette)
+    };
+    // The square has a repeat of two units, so the relief is 0.4 deep.
+    let below = drawn(cut(Vec3::ONE, stripes), Vec3::Z * -0.4, true);
+    let middle = |ids: &[u32]| -> Vec<bool> {
+        (20..44).flat_map(|y| (24..40).map(move |x| 64 * y + x)).map(|i| ids[i] == 0).collect()
+    };
+    let differ =
+        |ids: &[u32]| middle(ids).iter().zip(middle(&below)).filter(|(a, b)| **a != *b).count();
+    let [at_hits, at_polygons] = [solid(true), solid(false)].map(|ids| differ(&ids));
+    assert!(middle(&below).iter().any(|is| *is) && middle(&below).iter().any(|is| !*is));
+    assert!(at_hits <= 4 && at_polygons > 60, "{at_hits} and {at_polygons} pixels differ");
 }

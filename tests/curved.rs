@@ -215,3 +215,28 @@ fn linear_skies_are_what_they_are_made_of() {
     let error = (sky.irradiance(normal) - of(normal * (2.0 / 3.0))).abs().max_element();
     assert!(error < 0.005, "{sky:?}");
 }
+
+/// Where a curved surface faces the eye rays go apart to all sides, and no sweep takes them for rays
+/// that go one way: pixels there were black.
+#[test]
+fn what_faces_the_eye_is_drawn() {
+    let mut scene = torus(cobbles(512, 8), &[], Vec3::ONE);
+    let [eye, target] = [Vec3::new(0.0, 22.0, 26.0), Vec3::new(0.0, -0.1, 0.0)];
+    scene.camera = Camera { eye, target, ..scene.camera };
+    for height in [1.2, 1.6, 2.2, 3.0] {
+        scene.camera.orthographic = Some(height);
+        let settings = Settings { width: 320, height: 180, ..Settings::default() };
+        let [swept, truth] =
+            [Filter::default(), Filter::Truth(Rays { samples: 4 })].map(|filter| {
+                render(scene.clone(), Settings { filter, ..settings.clone() })
+                    .expect("a valid scene")
+            });
+        // Stones are brighter than their darkest joint.
+        let black = swept
+            .pixels
+            .iter()
+            .zip(&truth.pixels)
+            .filter(|(a, b)| a[3] == 1.0 && a[0] < 0.01 && b[0] > 0.02);
+        assert_eq!(black.count(), 0, "{height} high");
+    }
+}

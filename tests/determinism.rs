@@ -152,6 +152,10 @@ fn cases() -> Vec<Case> {
     cases.push(("far field".into(), Wrap::Repeat, 200, far));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, small(Filter::Horizon(horizon))));
     cases.extend(baked_cases());
+    for (name, filter) in [("Horizon", Filter::Horizon(horizon)), ("Ewa", Filter::Ewa(ewa))] {
+        let settings = Settings { lighting: Lighting::Lit, ..small(filter) };
+        cases.push((format!("{PARALLEL}, {name}"), Wrap::Repeat, 64, settings));
+    }
     // Texels a side that are no power of two wrap by a division.
     for (name, filter) in [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa)), ("One ray", ray)] {
         cases.push((format!("{name}, 50 texels"), Wrap::Repeat, 50, small(filter)));
@@ -162,12 +166,21 @@ fn cases() -> Vec<Case> {
 /// How cases begin that are lit by the sun and the sky alone, so that light is baked.
 const BAKED: &str = "baked";
 
-fn draw(&(ref name, wrap, size, ref settings): &Case) -> Frame {
+/// How cases begin that are seen by parallel rays.
+const PARALLEL: &str = "orthographic";
+
+/// What a case shows.
+fn scene_of(&(ref name, wrap, size, _): &Case) -> Scene {
     let mut scene = scene(wrap, size);
     if name.starts_with(BAKED) {
         scene.lights.retain(|light| matches!(light, Light::Sun { .. }));
     }
-    Renderer::new(scene, settings.clone()).expect("a valid scene").render()
+    scene.camera.orthographic = name.starts_with(PARALLEL).then_some(4.0);
+    scene
+}
+
+fn draw(case: &Case) -> Frame {
+    Renderer::new(scene_of(case), case.3.clone()).expect("a valid scene").render()
 }
 
 /// 64-bit FNV-1a of the frame's bits and of its 8-bit bytes.
@@ -201,9 +214,9 @@ fn frames_have_the_golden_bytes() {
 fn frames_do_not_depend_on_threads_and_tiles() {
     let pools = [1, 2, 7]
         .map(|num| rayon::ThreadPoolBuilder::new().num_threads(num).build().expect("a pool"));
-    for (name, wrap, size, settings) in cases() {
-        let mut renderer =
-            Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene");
+    for case in cases() {
+        let (name, .., settings) = &case;
+        let mut renderer = Renderer::new(scene_of(&case), settings.clone()).expect("a valid scene");
         let expected = hash(&pools[0].install(|| renderer.render()));
         for (pool, tile_size) in pools.iter().cycle().zip([8, 16, 32, 64, 128, 256]) {
             renderer
@@ -247,9 +260,9 @@ fn regions_have_the_bytes_of_their_part_of_the_frame() {
         [13, 30, 32, 7],
         [1, 0, 3, 37],
     ];
-    for (name, wrap, size, settings) in cases() {
-        let mut renderer =
-            Renderer::new(scene(wrap, size), settings.clone()).expect("a valid scene");
+    for case in cases() {
+        let (name, .., settings) = &case;
+        let mut renderer = Renderer::new(scene_of(&case), settings.clone()).expect("a valid scene");
         let whole = renderer.render();
         for (i, [x, y, width, height]) in regions.into_iter().enumerate() {
             let region = Some(Region { x, y, width, height });

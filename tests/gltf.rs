@@ -559,3 +559,18 @@ fn broken_files_are_refused_by_one_line_that_says_where() {
     let error = load_gltf_bytes(&whole, &options).expect_err("a refusal");
     assert!(error.to_string().contains("max_triangles"), "{error}");
 }
+
+#[test]
+fn orthographic_cameras_have_the_height_of_the_file() {
+    let rest = r#","cameras":[{"type":"orthographic","orthographic":
+        {"xmag":3,"ymag":1.5,"znear":0,"zfar":10}}]"#;
+    let nodes = r#"[{"mesh":0},{"camera":0,"translation":[0,0,4]}]"#;
+    let scene = square("{}", rest)
+        .replace(r#""nodes":[0]"#, r#""nodes":[0,1]"#)
+        .replace(r#"[{"mesh":0}]"#, nodes);
+    let loaded = loaded(&Binary::square().glb(&scene));
+    assert_eq!(loaded.warnings, [""; 0]);
+    let camera = loaded.scene.camera;
+    assert_eq!((camera.eye, camera.orthographic), (Vec3::Z * 4.0, Some(3.0)));
+    assert!((camera.near - 1e-5).abs() < 1e-9);
+}

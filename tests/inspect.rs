@@ -2,14 +2,16 @@
 //! views of whole frames.
 
 mod common;
+#[path = "common/displaced.rs"]
+mod displaced;
 
 use basrelief::footprint::Ellipse;
 use basrelief::inspect::{self, Cut, Figure, Inspection, View, measure};
 use basrelief::relief::HeightField;
 use basrelief::texture::{Surface, Wrap};
 use basrelief::{
-    Derivatives, Filter, FootprintRule, Formulas, Light, Lighting, Scene, Settings, Visible,
-    reference, scene,
+    Derivatives, Filter, FootprintRule, Formulas, Layer, Light, Lighting, Renderer, Scene,
+    Settings, Visible, reference, scene,
 };
 use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
@@ -352,6 +354,50 @@ fn relief_moves_the_depth_behind_the_polygon() {
     // The relief is a tenth of a unit deep, and the eye 1.6 above the floor: the way grows by a
     // sixteenth at the most.
     assert!(pairs.iter().all(|(flat, relief)| *relief <= flat * (1.0 + 0.1 / 1.6 + 1e-3)));
+}
+
+/// Past outlines, too, views and the inspector see what frames and layers see.
+#[test]
+fn views_and_pixels_look_past_outlines() {
+    let torus = displaced::torus([48, 24]);
+    let scene = displaced::scene(torus, common::cobbles(48, 2), 3.4);
+    for silhouette in [true, false] {
+        let settings = Settings {
+            width: 96,
+            height: 64,
+            silhouette,
+            filter: Filter::Nearest,
+            ..Settings::default()
+        };
+        let of = |view| measure(&scene, &settings, view).unwrap().pixels;
+        let (depth, uv, normal) = (of(View::Depth), of(View::Uv), of(View::Normal));
+        let mut renderer = Renderer::new(scene.clone(), settings.clone()).expect("a valid scene");
+        let layers = renderer.render_layers(&Layer::ALL);
+        let mut num = 0;
+        for i in 0..96 * 64 {
+            let triangle = layers.ids(Layer::Triangle)[i];
+            assert_eq!(depth[i].is_some(), triangle != u32::MAX, "pixel {i}");
+            let Some([distance, ..]) = depth[i] else { continue };
+            let expected = layers.floats(Layer::Depth)[i];
+            assert!((distance - expected).abs() < 2e-4, "pixel {i}: {distance}, not {expected}");
+            let same = |found: Option<[f32; 3]>, layer: Layer| {
+                let num = layer.num_channels();
+                let expected = &layers.floats(layer)[num * i..num * (i + 1)];
+                found.unwrap().iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3)
+            };
+            // Bent rays of what is not followed find places near those of straight ones.
+            assert!(!silhouette || same(uv[i], Layer::Uv), "pixel {i}");
+            assert!(!silhouette || same(normal[i], Layer::Normal), "pixel {i}");
+            if i % 53 == 0 {
+                num += 1;
+                let pixel = [i as u32 % 96, i as u32 / 96];
+                let seen = inspect::pixel(&scene, &settings, pixel).expect("a surface");
+                assert_eq!(seen.triangle, triangle as usize, "pixel {i}");
+                assert_eq!(seen.ray.hit, uv[i].unwrap()[..2], "pixel {i}");
+            }
+        }
+        assert!(num > 20, "{num} pixels");
+    }
 }
 
 #[test]

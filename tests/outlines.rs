@@ -6,10 +6,10 @@ mod displaced;
 
 use basrelief::invariants::outlines_hold;
 use basrelief::relief::{HeightField, ReliefPlace, march};
-use basrelief::shell::{Met, Shell, ViewRay};
+use basrelief::shell::{Met, Shell, ViewRay, Width};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::{Surface, SurfaceMaps, Wrap};
-use basrelief::{Filter, Frame, Layer, Mesh, Rays, Renderer, Scene, Settings};
+use basrelief::{Eye, Filter, Frame, Layer, Mesh, Rays, Renderer, Scene, Settings};
 use common::{Random, cobbles, floor_scene, rough_surface};
 use displaced::{
     ball_in_stones, decibels, depths_within, displaced, overlap, scene, show, sphere, torus,
@@ -187,6 +187,7 @@ fn rays_rise_from_a_ball_without_relief_to_meet() {
     let shell = Shell::new(&mesh, 0.1);
     assert!(shell.is_curved());
     let eye = DVec3::new(0.0, 0.0, 4.0);
+    let seen_from = Eye { place: eye.as_vec3(), share: 1.0 };
     let (mut num_hits, mut num_passed) = (0, 0);
     for (i, triangle) in mesh.triangles.iter().enumerate() {
         let middle = triangle.iter().fold(Vec3::ZERO, |sum, v| sum + mesh.positions[*v as usize]);
@@ -196,7 +197,7 @@ fn rays_rise_from_a_ball_without_relief_to_meet() {
         if front.dot(eye - middle) <= 0.0 {
             continue;
         }
-        let ray = ViewRay { eye, direction: middle - eye };
+        let ray = ViewRay { from: eye, direction: middle - eye };
         match shell.follow(&mesh, &field, i as u32, &ray) {
             Met::Relief(hit) => {
                 num_hits += 1;
@@ -208,10 +209,50 @@ fn rays_rise_from_a_ball_without_relief_to_meet() {
             Met::Nothing(distance) => {
                 num_passed += 1;
                 assert!(distance >= 1.0 - 1e-6, "out of it before its polygon");
-                assert!(shell.may_be_passed(&mesh, i as u32, eye.as_vec3()), "triangle {i}");
+                assert!(shell.passable(&mesh, i as u32, seen_from).is_some(), "triangle {i}");
             }
             Met::Polygon => panic!("it has relief"),
         }
     }
     assert!(num_hits > 500 && num_passed > 10, "{num_hits} hits, {num_passed} passed");
+}
+
+/// Where a probe says that all rays around it hit, they do.
+#[test]
+fn rays_beside_a_probe_hit_what_it_hits() {
+    let mesh = torus([96, 48]);
+    let maps = SurfaceMaps { relief_depth: 0.06, ..cobbles(128, 4) };
+    let (field, shell) =
+        (HeightField::new(&Surface::new(maps).expect("valid maps")), Shell::new(&mesh, 0.06));
+    let from = DVec3::new(0.0, 2.2, 2.6);
+    let width = Width { per_distance: 0.004, ..Width::default() };
+    let mut num_sure = 0;
+    for (i, triangle) in mesh.triangles.iter().enumerate() {
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize].as_dvec3());
+        let (middle, front) = ((a + b + c) / 3.0, (b - a).cross(c - a).normalize());
+        let cosine = front.dot((from - middle).normalize());
+        if !(0.0..0.5).contains(&cosine) {
+            continue;
+        }
+        let forward = -from.normalize();
+        // So long that all go 1 along the view.
+        let ray = |to: DVec3| {
+            let way = to - from;
+            ViewRay { from, direction: way / way.dot(forward) }
+        };
+        let probed = ray(middle);
+        let Met::Relief(_) = shell.probe(&mesh, &field, i as u32, (&probed, width)) else {
+            continue;
+        };
+        num_sure += 1;
+        let (x, y) = forward.any_orthonormal_pair();
+        for turn in 0..12 {
+            let around = displaced::direction(turn as f32 / 12.0).as_dvec2() * 0.004;
+            let direction = probed.direction + x * around.x + y * around.y;
+            let beside = ViewRay { from, direction };
+            let met = shell.follow(&mesh, &field, i as u32, &beside);
+            assert!(matches!(met, Met::Relief(_)), "triangle {i}, turn {turn}: {met:?}");
+        }
+    }
+    assert!(num_sure > 100, "{num_sure} probes");
 }

@@ -42,7 +42,8 @@ impl From<Error> for Refusal {
         match error {
             Error::Setting { name, reason } => Self(format!("{}: {reason}", option_of(name))),
             Error::Scene { part, reason } if part == "camera" => Self(format!(
-                "the camera (--eye, --target, --up, --fov, --intrinsics, --pose, --near): {reason}"
+                "the camera (--eye, --target, --up, --fov, --intrinsics, --orthographic, --pose, \
+                 --near): {reason}"
             )),
             Error::Limit { option, .. } => {
                 let text = error.to_string();

@@ -98,6 +98,7 @@ pub fn layers(bytes: &[u8]) {
                 up: vector(up),
                 fov_degrees: 60.0 + 30.0 * fov.get(),
                 near: near.get().abs(),
+                orthographic: (options & 48 == 32).then(|| 8.0 * (1.0 + fov.get())),
                 intrinsics: (options & 16 != 0).then_some(Intrinsics {
                     fx: lens[0],
                     fy: lens[1],

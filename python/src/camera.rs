@@ -40,8 +40,8 @@ impl Camera {
             target: vector(target, "target")?,
             up,
             fov_degrees: fov,
-            intrinsics: None,
             near,
+            ..basrelief::Camera::default()
         })
     }
 
@@ -112,6 +112,7 @@ impl Camera {
             fov_degrees: fov.unwrap_or(self.0.fov_degrees),
             intrinsics,
             near: near.unwrap_or(self.0.near),
+            ..self.0
         })
     }
 
@@ -148,7 +149,7 @@ impl Camera {
     }
 
     fn __repr__(&self) -> String {
-        let basrelief::Camera { eye, target, up, fov_degrees, near, intrinsics } = self.0;
+        let basrelief::Camera { eye, target, up, fov_degrees, near, intrinsics, .. } = self.0;
         let [eye, target, up] = [eye, target, up].map(|v| format!("({}, {}, {})", v.x, v.y, v.z));
         let lens = intrinsics.map_or_else(
             || format!("fov={fov_degrees}"),
@@ -182,6 +183,7 @@ impl Camera {
     ) -> PyResult<Self> {
         let [eye, target, up] = [eye, target, up].map(Vec3::from);
         let intrinsics = intrinsics.map(|(fx, fy, cx, cy)| Intrinsics { fx, fy, cx, cy });
-        checked(basrelief::Camera { eye, target, up, fov_degrees: fov, intrinsics, near })
+        let start = basrelief::Camera::default();
+        checked(basrelief::Camera { eye, target, up, fov_degrees: fov, intrinsics, near, ..start })
     }
 }

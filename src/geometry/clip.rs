@@ -1,14 +1,14 @@
 //! Clips a triangle against the near plane and the guard band (Sutherland and Hodgman 1974), in
 //! homogeneous coordinates.
 //!
-//! A point `p = (x, y, w)` is inside a plane `n` where `n . p >= 0`: `w - near`, and `GUARD w - x`
-//! with its like. Where an edge leaves, the new vertex is computed from the inside end to the
+//! A point is inside a plane where its distance from that is not below 0: `d - near`, and `GUARD w - x`
+//! with its like, with the `w` of [`projection`](super::projection). Where an edge leaves, the new vertex is computed from the inside end to the
 //! outside end, so both triangles of a shared edge compute the same numbers, whichever way round
 //! they run through it.
 
 use super::projection::{GUARD, Projection};
 
-/// A point in view space: x, y, w.
+/// A point in view space: x, y, and the distance along the view.
 pub(super) type Point = [f64; 3];
 /// Most corners of a triangle cut by five planes.
 const MAX_CORNERS: usize = 8;
@@ -45,23 +45,25 @@ pub(super) fn clip(triangle: [Point; 3], projection: &Projection) -> Option<Poly
     let mut polygon = Polygon { corners: [[0.0; 3]; MAX_CORNERS], num_corners: 3 };
     polygon.corners[..3].copy_from_slice(&triangle);
     polygon = cut(&polygon, |p| p[2] - f64::from(projection.near));
-    polygon = cut(&polygon, |p| GUARD * p[2] - p[0]);
-    polygon = cut(&polygon, |p| GUARD * p[2] + p[0]);
-    polygon = cut(&polygon, |p| GUARD * p[2] - p[1]);
-    polygon = cut(&polygon, |p| GUARD * p[2] + p[1]);
+    let w = |p: &Point| projection.lens.w(p[2]);
+    polygon = cut(&polygon, |p| GUARD * w(p) - p[0]);
+    polygon = cut(&polygon, |p| GUARD * w(p) + p[0]);
+    polygon = cut(&polygon, |p| GUARD * w(p) - p[1]);
+    polygon = cut(&polygon, |p| GUARD * w(p) + p[1]);
     (polygon.num_corners >= 3).then_some(polygon)
 }
 
 /// Whether all corners lie on the outer side of one of the frame's borders or of the near plane.
 fn is_out_of_frame(triangle: &[Point; 3], projection: &Projection) -> bool {
-    let [left, above] = projection.center;
+    let [left, above] = projection.lens.center;
+    let w = |p: &Point| projection.lens.w(p[2]);
     let (right, below) = (f64::from(projection.width) - left, f64::from(projection.height) - above);
     let all = |distance: &dyn Fn(&Point) -> f64| triangle.iter().all(|p| distance(p) < 0.0);
     all(&|p| p[2] - f64::from(projection.near))
-        || all(&|p| right * p[2] - p[0])
-        || all(&|p| left * p[2] + p[0])
-        || all(&|p| below * p[2] - p[1])
-        || all(&|p| above * p[2] + p[1])
+        || all(&|p| right * w(p) - p[0])
+        || all(&|p| left * w(p) + p[0])
+        || all(&|p| below * w(p) - p[1])
+        || all(&|p| above * w(p) + p[1])
 }
 
 fn cut(polygon: &Polygon, distance: impl Fn(&Point) -> f64) -> Polygon {

@@ -1,9 +1,9 @@
 //! Model space to screen triangles: project, cull, clip, snap.
 //!
 //! In: a validated [`Scene`]. Out: [`ScreenTriangle`]s in the order of meshes and their triangles,
-//! whatever the number of threads. View space is `(x, y, w)`: `w` is the distance along the view,
-//! and `(x, y) / w` lies on the screen, in pixels from the frame's middle, x to the right and y
-//! down. There is no far plane; depth is `1 / w`, larger is nearer.
+//! whatever the number of threads. View space is `(x, y, d)`: `d` is the distance along the view,
+//! and `(x, y) / d`, or `(x, y)` where rays are parallel, lies on the screen, in pixels from the frame's
+//! middle, x to the right and y down. There is no far plane.
 //!
 //! What is dropped: triangles that are not finite, seen from behind (if culled), outside the frame,
 //! without area after snapping, or too small to hold a sample. What reaches beyond the near plane
@@ -18,7 +18,7 @@ mod samples;
 mod setup;
 
 pub(crate) use plane::BasisLanes;
-pub use plane::{Plane, ScreenBasis};
+pub use plane::{Lens, Plane, ScreenBasis};
 pub use projection::{Projection, SUBPIXEL_BITS};
 pub use samples::{offset_bounds, sample_offsets};
 
@@ -42,7 +42,7 @@ const VERTEX_CHUNK: usize = 8192;
 pub struct ScreenTriangle {
     /// Corners in 1/256 pixel from the frame's upper left corner, clockwise as displayed.
     pub corners: [[i32; 2]; 3],
-    /// 1 / w on the screen; the same for all pieces of a triangle.
+    /// The [nearness](Projection::nearness) on the screen; the same for all pieces of a triangle.
     pub depth: Plane,
     /// Index into [`Scene::meshes`].
     pub mesh: u32,

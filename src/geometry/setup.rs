@@ -86,7 +86,7 @@ impl<'a> Setup<'a> {
         let Some(polygon) = clip(view, self.projection) else {
             return;
         };
-        let depth = ScreenBasis::new(view, self.projection.center).inverse_w();
+        let depth = ScreenBasis::new(view, &self.projection.lens).nearness();
         // At most six pieces around the first corner; lanes beyond have no area.
         let mut corners = [[[0; 8]; 2]; 3];
         let snapped = |i: usize| self.projection.snap(polygon.corners()[i]);
@@ -132,7 +132,7 @@ impl Queue {
             return;
         }
         let view = self.view.map(|corner| corner.map(|lanes| f64x8::new(lanes.map(f64::from))));
-        let depth = BasisLanes::new(view, projection.center).inverse_w();
+        let depth = BasisLanes::new(view, &projection.lens).nearness();
         out.extend((0..self.num).map(|lane| ScreenTriangle {
             corners: self.corners[lane],
             depth: depth.map(|lanes| lanes[lane]),

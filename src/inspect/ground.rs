@@ -2,13 +2,14 @@
 
 use super::ray::Ray;
 use crate::footprint::{Footprint, FootprintRule, Footprints};
-use crate::geometry::{self, Geometry, ScreenTriangle, sample_offsets};
+use crate::geometry::{self, Geometry};
 use crate::light::SurfacePoint;
-use crate::raster::{AttributePlanes, Edges, Rect};
-use crate::relief::{HeightField, displacement, finite, march};
-use crate::render::surface_point;
+use crate::raster::{AttributePlanes, Drawn, Follow, QuadPair, Rasterizer, TileGrid};
+use crate::relief::{HeightField, bent, displacement, finite, march};
+use crate::render::{Outlines, Passages, PreparedScene, surface_point};
 use crate::scene::Scene;
-use crate::settings::{Lighting, Settings};
+use crate::settings::{Lighting, Region, Settings};
+use crate::shell::{Met, ReliefHit};
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
 
@@ -19,6 +20,8 @@ pub(super) struct Ground {
     pub(super) material: usize,
     pixel: [u32; 2],
     planes: AttributePlanes,
+    /// Where the ray hits the relief of a curved mesh, and the polygon above.
+    past: Option<(ReliefHit, SurfacePoint)>,
 }
 
 /// Two quads over a relief, or over the bare polygon: lane `4 * quad + 2 * dy + dx`.
@@ -26,6 +29,7 @@ pub(super) struct Ground {
 pub(super) struct Quads<'a> {
     uv: [PixelLanes; 2],
     view: [PixelLanes; 3],
+    bend: Option<[PixelLanes; 2]>,
     field: Option<&'a HeightField>,
 }
 
@@ -35,52 +39,103 @@ pub(super) struct QuadPixel<'a> {
     quads: Quads<'a>,
     pub(super) lane: usize,
     pub(super) ray: Ray,
+    /// Where its ray was followed to the relief of a curved mesh.
+    pub(super) past: Option<ReliefHit>,
 }
 
 impl Ground {
-    /// The nearest triangle at the centre of a pixel.
+    /// What is seen at the centre of a pixel.
     pub(super) fn at(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Option<Self> {
+        let [x, y] = pixel;
         // Lit planes say where a pixel is in the world.
-        let settings = Settings { msaa: 1, lighting: Lighting::Lit, ..settings.clone() };
-        let geometry = geometry::project(scene, &settings);
-        let triangle = nearest(&geometry, pixel)?;
-        let planes = AttributePlanes::new(&geometry, triangle, scene, &settings);
-        let mesh = triangle.mesh as usize;
+        let settings = Settings {
+            msaa: 1,
+            lighting: Lighting::Lit,
+            region: Some(Region { x, y, width: 1, height: 1 }),
+            ..settings.clone()
+        };
+        let (geometry, prepared) = (geometry::project(scene, &settings), PreparedScene::new(scene));
+        let outlines = prepared.outlines(scene, &settings, geometry.projection());
+        let outlines = outlines.as_ref();
+        let passages = Passages::new(scene, geometry.projection(), outlines);
+        let follow = passages.as_ref().map(|passages| passages as &dyn Follow);
+        let drawn = Drawn { scene, settings: &settings, group: None, follow };
+        let seen = seen(&geometry, drawn, pixel)?;
+        let [mesh, triangle] = seen.map(|index| index as usize);
+        let of_seen = geometry.triangles().find(|t| [t.mesh, t.triangle] == seen)?;
+        let planes = AttributePlanes::new(&geometry, of_seen, scene, &settings);
+        let past = outlines.and_then(|outlines| {
+            let hit = hit(outlines, seen, pixel)?;
+            Some((hit, outlines.point(seen[0], &hit)))
+        });
         let material = scene.meshes[mesh].material;
         (!scene.meshes[mesh].tex_coords.is_empty() || scene.materials[material].surface.is_none())
-            .then_some(Self { mesh, triangle: triangle.triangle as usize, material, pixel, planes })
+            .then_some(Self { mesh, triangle, material, pixel, planes, past })
     }
 
-    /// The polygon's point at the pixel's centre.
+    /// The polygon's point at the pixel's centre, or above its hit.
     pub(super) fn point(&self) -> Option<SurfacePoint> {
-        surface_point(&self.planes, self.pixel.map(|c| c as f32 + 0.5))
+        let of_polygon = || surface_point(&self.planes, self.pixel.map(|c| c as f32 + 0.5));
+        self.past.map(|(_, point)| point).or_else(of_polygon)
     }
 
     /// The pixel over the relief of `field`, or over the bare polygon.
     pub(super) fn pixel<'a>(&self, field: Option<&'a HeightField>) -> QuadPixel<'a> {
-        let [x, y] = self.pixel.map(|c| (c & !1) as f32);
-        let x = PixelLanes::new([0.5, 1.5, 0.5, 1.5, 0.5, 1.5, 0.5, 1.5]) + x;
-        let y = PixelLanes::new([0.5, 0.5, 1.5, 1.5, 0.5, 0.5, 1.5, 1.5]) + y;
-        let (uv, view) = self.planes.at(x, y);
-        Quads { uv, view, field }.pixels()[(self.pixel[0] & 1 | (self.pixel[1] & 1) << 1) as usize]
+        let origin = self.pixel.map(|c| (c & !1) as i32);
+        let pair = QuadPair::new(self.material, [origin; 2], [1; 8], [&self.planes; 2]);
+        let lane = (self.pixel[0] & 1 | (self.pixel[1] & 1) << 1) as usize;
+        let mut pixel = Quads::new(&pair, field).pixels()[lane];
+        if let (Some((hit, _)), Some(_)) = (&self.past, field) {
+            pixel.meet(hit);
+        }
+        pixel
+    }
+}
+
+/// The indices of mesh and triangle that the centre of the pixel sees which is the frame's region.
+fn seen(geometry: &Geometry, drawn: Drawn, [x, y]: [u32; 2]) -> Option<[u32; 2]> {
+    let bands = TileGrid::new(drawn.settings).num_tiles[1] as usize;
+    let mut found = vec![None; bands];
+    Rasterizer::default().see_centers(geometry, (drawn, false), &mut found, &|tile, found| {
+        for row in tile.rows().filter(|row| row.y == y as i32) {
+            let lane = (x as i32 - row.x) as usize;
+            if lane < 8 && row.seen >> lane & 1 == 1 {
+                let mut names = [[0; 2]; 8];
+                tile.names(&row, &mut names);
+                *found = Some(names[lane]);
+            }
+        }
+    });
+    found.into_iter().flatten().next()
+}
+
+/// Where the ray through a pixel's centre hits the relief of a curved mesh.
+pub(super) fn hit(outlines: &Outlines, triangle: [u32; 2], pixel: [u32; 2]) -> Option<ReliefHit> {
+    if !outlines.is_curved(triangle[0]) {
+        return None;
+    }
+    match outlines.met(triangle, pixel.map(|c| f64::from(c) + 0.5)) {
+        Met::Relief(hit) => Some(hit),
+        Met::Polygon | Met::Nothing(_) => None,
     }
 }
 
 impl<'a> Quads<'a> {
-    /// Quads with the texture coordinates `uv` and view rays `view`.
-    pub(super) fn new(
-        uv: [PixelLanes; 2],
-        view: [PixelLanes; 3],
-        field: Option<&'a HeightField>,
-    ) -> Self {
-        Self { uv, view, field }
+    /// A pair over the relief of `field`, or over the bare polygon.
+    pub(super) fn new(pair: &QuadPair, field: Option<&'a HeightField>) -> Self {
+        let bend = pair.bend().filter(|_| field.is_some());
+        Self { uv: pair.uv, view: pair.view(), bend, field }
     }
 
     /// Its pixels with their rays.
     pub(super) fn pixels(self) -> [QuadPixel<'a>; 8] {
         let uv = self.uv.map(finite);
-        let displacement =
-            displacement(&self.view, self.field.map_or(0.0, |field| field.relief_depth));
+        let relief_depth = self.field.map_or(0.0, |field| field.relief_depth);
+        let mut displacement = displacement(&self.view, relief_depth);
+        if let Some(bend) = self.bend {
+            let farther = bent(&displacement, &self.view, &bend, relief_depth);
+            displacement = displacement.map(|d| d * farther);
+        }
         let depth = self.field.map_or(PixelLanes::ZERO, |field| march(field, &uv, &displacement));
         let hit = [0, 1].map(|i| uv[i] + displacement[i] * depth);
         std::array::from_fn(|lane| {
@@ -88,16 +143,37 @@ impl<'a> Quads<'a> {
             let hit_depth = depth.as_array()[lane];
             let ray =
                 Ray { base: at(&uv), displacement: at(&displacement), hit_depth, hit: at(&hit) };
-            QuadPixel { quads: self, lane, ray }
+            QuadPixel { quads: self, lane, ray, past: None }
         })
+    }
+
+    fn footprints(&self, rule: &FootprintRule) -> Footprints {
+        let Quads { uv, view, bend, field } = self;
+        let all = u8::MAX;
+        let (Some(bend), Some(field)) = (bend, field) else {
+            return Footprints::of_quads(uv, view, *field, rule, all);
+        };
+        if !rule.is_traced {
+            return Footprints::of_quads(uv, view, Some(field), rule, all).bent(view, bend, field);
+        }
+        let mut pixels = [Footprints::before_hits(uv, view, field, all).bent(view, bend, field)];
+        Footprints::find_hits(&mut pixels, field, rule);
+        let [pixels] = pixels;
+        pixels
     }
 }
 
 impl QuadPixel<'_> {
     /// The pixel's footprint by a rule.
     pub(super) fn footprint(&self, rule: &FootprintRule) -> Footprint {
-        let Quads { uv, view, field } = self.quads;
-        Footprints::of_quads(&uv, &view, field, rule, u8::MAX).lane(self.lane)
+        self.quads.footprints(rule).lane(self.lane)
+    }
+
+    /// The ray hits the relief of a curved mesh.
+    pub(super) fn meet(&mut self, hit: &ReliefHit) {
+        self.ray.hit = hit.place.uv.map(|c| c as f32);
+        self.ray.hit_depth = hit.place.depth as f32;
+        self.past = Some(*hit);
     }
 
     /// Texture coordinates of a lane of the quad, and what the relief adds to them.
@@ -110,24 +186,4 @@ impl QuadPixel<'_> {
     pub(super) fn texel(&self, surface: &Surface) -> [i32; 2] {
         surface.base().in_texels(self.ray.hit).map(|c| c.floor() as i32)
     }
-}
-
-/// The nearest triangle at the centre of a pixel; of equally near ones the first, as in the
-/// rasterizer.
-fn nearest(geometry: &Geometry, pixel: [u32; 2]) -> Option<&ScreenTriangle> {
-    let [x, y] = pixel.map(|c| c as i32);
-    let rect = Rect { min: [x, y], max: [x + 1, y + 1] };
-    let mut best: Option<(f32, &ScreenTriangle)> = None;
-    for triangle in geometry.triangles() {
-        let mut is_inside = false;
-        Edges::<1>::new(&triangle.corners, sample_offsets(1)).cover(&rect, &mut |row| {
-            is_inside |= row.mask.to_array()[(x - row.x) as usize] != 0;
-        });
-        let [dx, dy, constant] = triangle.depth;
-        let inverse_w = (x as f32 + 0.5) * dx + (y as f32 + 0.5) * dy + constant;
-        if is_inside && best.is_none_or(|(nearest, _)| inverse_w > nearest) {
-            best = Some((inverse_w, triangle));
-        }
-    }
-    best.map(|(_, triangle)| triangle)
 }

@@ -33,7 +33,9 @@ pub(super) fn hit_of<'a>(
     let surface = prepared.surface();
     let [x, y] = seen.texel(surface);
     let normal = Vec3::from(surface.base().texel(x, y).normal);
-    let (base, place) = (seen.ray.base, seen.ray.hit);
+    let place = seen.ray.hit;
+    // Where the ray was followed, the point is that of the polygon above.
+    let base = if seen.past.is_some() { place } else { seen.ray.base };
     let relief = prepared.field();
     let spot = Spot { relief, base, place, albedo: Vec3::ONE, normal };
     Hit { point, finish: material.finish(|map| map.at(place)), spot }
@@ -63,7 +65,7 @@ impl PixelLight {
                 Light::Sun { to_light, .. } => to_light,
                 Light::Point { position, .. } => position - point.position,
             };
-            let [_, _, normal] = point.axes(scene.camera.eye);
+            let [_, _, normal] = point.axes(scene.camera.viewpoint());
             let frame = TextureFrame { tangents: point.tangents, normal };
             let beam = frame.beam(to_light.normalize_or_zero(), Vec3::ONE)?;
             let displacement = beam.slope.map(|slope| slope * field.relief_depth);

@@ -1,19 +1,20 @@
 //! One number, or three, for every pixel of a frame.
 
 use super::cut::Cut;
-use super::ground::{QuadPixel, Quads};
+use super::ground::{QuadPixel, Quads, hit};
 use super::light::{RAYS, hit_of, plain_hit};
 use super::sets::Sets;
 use crate::error::Result;
 use crate::filter::{LevelChoice, Prepared, Scratch};
 use crate::footprint::{Ellipse, Footprint, Footprints};
-use crate::geometry;
+use crate::geometry::{self, Projection};
 use crate::light::SurfacePoint;
 use crate::light::exact::{ExactLight, Hit};
-use crate::raster::{Drawn, Pool, QuadBlock, QuadPair, Rasterizer};
-use crate::render::{PreparedScene, Shader, pixel_center, surface_point};
+use crate::raster::{Drawn, Follow, Pool, QuadBlock, QuadPair, Rasterizer};
+use crate::render::{Outlines, Passages, PreparedScene, Shader, pixel_center, surface_point};
 use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
+use crate::shell::ReliefHit;
 use crate::simd::PixelLanes;
 use crate::texture::Texel;
 use glam::Vec3;
@@ -87,7 +88,12 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
     let asked = settings;
     let settings = Settings { msaa, lighting, ..settings.clone() };
     let pool = Pool::default();
-    let shader = Shader::new(scene, &settings, &prepared, None, &pool);
+    let geometry = geometry::project(scene, &settings);
+    let outlines = prepared.outlines(scene, asked, geometry.projection());
+    let outlines = outlines.as_ref();
+    let passages = Passages::new(scene, geometry.projection(), outlines);
+    let follow = passages.as_ref().map(|passages| passages as &dyn Follow);
+    let shader = Shader::new(scene, &settings, &prepared, outlines, &pool);
     let probe = Probe {
         scene,
         asked,
@@ -96,6 +102,8 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
         asks_levels,
         prepared: &prepared,
         shader: &shader,
+        projection: geometry.projection(),
+        outlines,
     };
     let pixels = Pixels::new(&settings);
     let shade = |block: &QuadBlock, colors: &mut Vec<[PixelLanes; 3]>| {
@@ -107,11 +115,10 @@ pub fn measure(scene: &Scene, settings: &Settings, view: View) -> Result<Measure
         }
         colors.resize(colors.len() + block.num_pairs(), [PixelLanes::ZERO; 3]);
     };
-    let geometry = geometry::project(scene, &settings);
     let mut colors =
         vec![[0.0; 4]; settings.drawn().width as usize * settings.drawn().height as usize];
     let group = |triangle| prepared.group(scene, triangle);
-    let drawn = Drawn { scene, settings: &settings, group: Some(&group), follow: None };
+    let drawn = Drawn { scene, settings: &settings, group: Some(&group), follow };
     Rasterizer::default().draw(&geometry, drawn, &shade, &|| 0.0, &mut colors);
     Ok(pixels.measured(&settings, view))
 }
@@ -168,6 +175,8 @@ struct Probe<'a> {
     asks_levels: bool,
     prepared: &'a PreparedScene,
     shader: &'a Shader<'a>,
+    projection: &'a Projection,
+    outlines: Option<&'a Outlines<'a>>,
 }
 
 /// A pixel, and what frames read for it.
@@ -200,16 +209,16 @@ impl Probe<'_> {
         let pairs = block.pairs().zip(footprints.iter().zip(choices));
         pairs
             .map(|(pair, (footprints, choices))| {
-                let pixels = Quads::new(pair.uv, pair.view(), prepared.field()).pixels();
+                let pixels = Quads::new(&pair, prepared.field()).pixels();
                 each_covered(&pair, |lane| {
                     let seen = Seen {
-                        pixel: pixels[lane],
+                        pixel: self.followed(&pair, pixels[lane]),
                         footprint: footprints.lane(lane),
                         choice: choices[lane],
                     };
                     if self.view.is_of_light() {
                         let hit = |point| hit_of(ground.material, prepared, &seen.pixel, point);
-                        return self.light(&pair, lane, hit);
+                        return self.light(&pair, (lane, seen.pixel.past), hit);
                     }
                     self.value(&pair, prepared, &seen)
                 })
@@ -221,10 +230,10 @@ impl Probe<'_> {
     /// measured.
     fn of_plain(&self, pair: &QuadPair, material: &Material) -> [Option<[f32; 3]>; 8] {
         match self.view {
-            View::Depth => each_covered(pair, |lane| [distance(pair, lane), 0.0, 0.0]),
+            View::Depth => each_covered(pair, |lane| [self.depth(pair, lane, 0.0), 0.0, 0.0]),
             View::Normal => each_covered(pair, |lane| world(pair, lane, Texel::UP)),
             View::Shadow | View::Light | View::Occlusion => each_covered(pair, |lane| {
-                self.light(pair, lane, |point| plain_hit(material, point))
+                self.light(pair, (lane, None), |point| plain_hit(material, point))
             }),
             View::Coverage
             | View::Mip
@@ -235,16 +244,27 @@ impl Probe<'_> {
         }
     }
 
+    /// A pixel of a pair whose ray is followed where its mesh is curved.
+    fn followed<'p>(&self, pair: &QuadPair, mut pixel: QuadPixel<'p>) -> QuadPixel<'p> {
+        let (place, triangle) = (pair.pixel(pixel.lane), pair.planes[pixel.lane / 4].triangle);
+        let hit = |outlines| hit(outlines, triangle, place.map(|c| c as u32));
+        if let Some(hit) = self.outlines.and_then(hit) {
+            pixel.meet(&hit);
+        }
+        pixel
+    }
+
     /// What light does at a lane's hit.
     fn light<'a>(
         &self,
         pair: &QuadPair,
-        lane: usize,
+        (lane, past): (usize, Option<ReliefHit>),
         hit: impl Fn(SurfacePoint) -> Hit<'a>,
     ) -> [f32; 3] {
-        let Some(point) = surface_point(pair.planes[lane / 4], pixel_center(pair, lane)) else {
-            return [0.0; 3];
-        };
+        let planes = pair.planes[lane / 4];
+        let above = self.outlines.zip(past).map(|(all, hit)| all.point(planes.triangle[0], &hit));
+        let of_polygon = || surface_point(planes, pixel_center(pair, lane));
+        let Some(point) = above.or_else(of_polygon) else { return [0.0; 3] };
         let occluders = self.prepared.occluders(self.scene);
         let exact = ExactLight { scene: self.scene, occluders };
         let reaching = exact.reaching(&hit(point), RAYS);
@@ -278,13 +298,15 @@ impl Probe<'_> {
                     Cut::new(surface, pixel, choice.level, filter.max_anisotropy()).num_seen();
                 [seen as f32 / all.max(1) as f32, all as f32, 0.0]
             }
+            View::Depth if pixel.past.is_some() => {
+                let distance = pixel.past.map_or(0.0, |hit| hit.distance as f32);
+                // Not before the polygon, whatever is rounded.
+                [distance.max(self.depth(pair, pixel.lane, 0.0)), 0.0, 0.0]
+            }
             View::Depth => {
-                // The ray sinks by gamma repeats on its way from the eye, and on by the depth of
-                // the hit.
-                let [.., gamma] = pair.view().map(|lanes| lanes.as_array()[pixel.lane].abs());
                 let sunk =
                     prepared.field().map_or(0.0, |field| field.relief_depth * pixel.ray.hit_depth);
-                [distance(pair, pixel.lane) * (1.0 + sunk / gamma.max(f32::MIN_POSITIVE)), 0.0, 0.0]
+                [self.depth(pair, pixel.lane, sunk), 0.0, 0.0]
             }
             View::Normal => {
                 let [x, y] = pixel.texel(surface);
@@ -293,6 +315,18 @@ impl Probe<'_> {
             View::Uv => [pixel.ray.hit[0], pixel.ray.hit[1], 0.0],
             View::Coverage | View::Shadow | View::Light | View::Occlusion => [0.0; 3],
         }
+    }
+
+    /// Distance along the view to where a ray has sunk so many repeats below the polygon.
+    fn depth(&self, pair: &QuadPair, lane: usize, sunk: f32) -> f32 {
+        let ([x, y], planes) = (pair.centers(), pair.planes[lane / 4]);
+        let [a, b, c] = planes.nearness;
+        let polygon = self.projection.distance(x * a + y * b + PixelLanes::splat(c));
+        // Along its view it sinks by gamma repeats.
+        let [.., gamma] = pair.view();
+        let lengths =
+            PixelLanes::splat(sunk) / gamma.abs().max(PixelLanes::splat(f32::MIN_POSITIVE));
+        self.projection.behind(polygon, lengths).as_array()[lane]
     }
 }
 
@@ -303,13 +337,6 @@ fn each_covered(
     let mut values = [None; 8];
     pair.covered().for_each(|lane| values[lane] = Some(value(lane)));
     values
-}
-
-/// Distance along the view to the polygon.
-fn distance(pair: &QuadPair, lane: usize) -> f32 {
-    let [x, y] = pair.centers().map(|lanes| lanes.as_array()[lane]);
-    let [a, b, c] = pair.planes[lane / 4].inverse_w;
-    1.0 / (a * x + b * y + c)
 }
 
 /// A normal of the texture frame in world space, on the side that the eye sees.

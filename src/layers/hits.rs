@@ -29,17 +29,15 @@ pub(super) struct Hits<'a> {
 struct PairHits {
     /// Texture coordinates of the hits.
     uv: [PixelLanes; 2],
-    /// How much farther from the eye the hits are than the polygon, as a factor of 1 or more.
-    farther: PixelLanes,
+    /// Distance along the view to the hits, not less than to the polygon.
+    distance: PixelLanes,
 }
 
 /// One pixel of a pair.
 struct Pixel<'a> {
     place: [i32; 2],
-    /// Distance along the view to the polygon.
-    w: f32,
     /// As in [`PairHits`].
-    farther: f32,
+    distance: f32,
     polygon_uv: [f32; 2],
     uv: [f32; 2],
     lit: Option<&'a LitLanes>,
@@ -65,27 +63,25 @@ impl Hits<'_> {
                 .and_then(|surface| surface.field())
                 .filter(|_| self.is_traced && is_textured);
             hits.clear();
-            hits.extend(
-                block
-                    .pairs()
-                    .map(|pair| PairHits { uv: pair.uv.map(finite), farther: PixelLanes::ONE }),
-            );
+            hits.extend(block.pairs().map(|pair| PairHits {
+                uv: pair.uv.map(finite),
+                distance: if field.is_some() { tile.distances(&pair) } else { PixelLanes::ONE },
+            }));
             if let Some(field) = field {
-                trace(&block, field, &mut hits);
+                trace(&block, (field, self.projection), &mut hits);
                 if let Some(outlines) = self.outlines {
-                    follow(&block, outlines, &mut hits);
+                    follow(&block, (outlines, tile), &mut hits);
                 }
             }
             let material = &self.scene.materials[block.material];
             for (pair, hits) in block.pairs().zip(&hits) {
-                self.write_pair(tile, (&pair, hits, field.is_some()), material, band);
+                self.write_pair((&pair, hits, field.is_some()), material, band);
             }
         }
     }
 
     fn write_pair(
         &self,
-        tile: &CenterTile,
         (pair, hits, has_relief): (&QuadPair, &PairHits, bool),
         material: &Material,
         band: &mut Band,
@@ -97,8 +93,7 @@ impl Hits<'_> {
             let of = |lanes: &PixelLanes| lanes.as_array()[lane];
             let pixel = Pixel {
                 place,
-                w: tile.w(place),
-                farther: of(&hits.farther),
+                distance: of(&hits.distance),
                 polygon_uv: pair.uv.each_ref().map(|lanes| of(&finite(*lanes))),
                 uv: hits.uv.each_ref().map(of),
                 lit: lit.as_ref(),
@@ -110,8 +105,8 @@ impl Hits<'_> {
                 // Without relief the polygon's place stands already.
                 if layer.is_place() && has_relief {
                     // Infinity is the background's.
-                    let w = (pixel.w * pixel.farther).min(f32::MAX);
-                    write_place(*layer, place, w, self.projection, values);
+                    let distance = pixel.distance.min(f32::MAX);
+                    write_place(*layer, place, distance, self.projection, values);
                 } else {
                     self.write_attribute(*layer, &pixel, material, values);
                 }
@@ -152,7 +147,11 @@ impl Hits<'_> {
 }
 
 /// Traces the rays of a block's pairs to the relief.
-fn trace(block: &QuadBlock, field: &HeightField, hits: &mut [PairHits]) {
+fn trace(
+    block: &QuadBlock,
+    (field, projection): (&HeightField, &Projection),
+    hits: &mut [PairHits],
+) {
     let along = |pair: QuadPair| displacement(&pair.view(), field.relief_depth);
     let along: Vec<_> = block.pairs().map(along).collect();
     let rays = hits.iter().zip(&along).zip(block.pairs()).map(|((hits, along), pair)| ViewRays {
@@ -165,14 +164,15 @@ fn trace(block: &QuadBlock, field: &HeightField, hits: &mut [PairHits]) {
     for (((hits, along), pair), depth) in hits.iter_mut().zip(along).zip(block.pairs()).zip(depths)
     {
         hits.uv = [0, 1].map(|i| hits.uv[i] + along[i] * depth);
-        // At least 1, and so never before the polygon, by the rules of rounding.
-        hits.farther = PixelLanes::ONE + finite(stretch(&pair.view(), field.relief_depth) * depth);
+        let lengths = finite(stretch(&pair.view(), field.relief_depth) * depth);
+        hits.distance = projection.behind(hits.distance, lengths);
     }
 }
 
 /// Follows the rays of a block's pairs that see curved meshes.
-fn follow(block: &QuadBlock, outlines: &Outlines, hits: &mut [PairHits]) {
+fn follow(block: &QuadBlock, (outlines, tile): (&Outlines, &CenterTile), hits: &mut [PairHits]) {
     for (pair, hits) in block.pairs().zip(hits) {
+        let polygon = tile.distances(&pair);
         for lane in pair.covered() {
             let triangle = pair.planes[lane / 4].triangle;
             if !outlines.is_curved(triangle[0]) {
@@ -182,8 +182,8 @@ fn follow(block: &QuadBlock, outlines: &Outlines, hits: &mut [PairHits]) {
             // Where rounding lets a ray pass after all, the polygon's own frame serves.
             let Met::Relief(hit) = outlines.met(triangle, place) else { continue };
             (0..2).for_each(|i| hits.uv[i].as_mut_array()[lane] = hit.place.uv[i] as f32);
-            let farther = hit.distance as f32 / pair.w.as_array()[lane];
-            hits.farther.as_mut_array()[lane] = farther.max(1.0);
+            let distance = polygon.as_array()[lane].max(hit.distance as f32);
+            hits.distance.as_mut_array()[lane] = distance;
         }
     }
 }

@@ -13,7 +13,7 @@ pub(super) fn write_place(
     projection: &Projection,
     values: &mut [f32],
 ) {
-    let place = || projection.ray(pixel.map(|c| f64::from(c) + 0.5)) * f64::from(w);
+    let place = || projection.place(pixel.map(|c| f64::from(c) + 0.5), f64::from(w));
     match layer {
         Layer::Depth | Layer::PolygonDepth => values[0] = w,
         Layer::CameraPosition => values[..3].copy_from_slice(&place().as_vec3().to_array()),

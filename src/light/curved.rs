@@ -3,6 +3,7 @@
 use super::disc::spiral;
 use super::vectors::{Vectors, cross, dot, repeat_length};
 use crate::relief::finite;
+use crate::scene::Eye;
 use crate::simd::PixelLanes;
 use glam::Vec3;
 
@@ -144,8 +145,8 @@ pub struct LinearSky {
 
 impl FrameLanes {
     /// At points with normals and tangents of any length, seen from `eye`.
-    pub fn new(position: &Vectors, normal: &Vectors, tangents: &[Vectors; 2], eye: Vec3) -> Self {
-        let to_eye = [0, 1, 2].map(|i| PixelLanes::splat(eye[i]) - position[i]);
+    pub fn new(position: &Vectors, normal: &Vectors, tangents: &[Vectors; 2], eye: Eye) -> Self {
+        let to_eye = [0, 1, 2].map(|i| PixelLanes::splat(eye.place[i]) - position[i] * eye.share);
         let part = from_outline(dot(normal, &to_eye)) * DENSITY + 0.5;
         let is_back = part.simd_le(PixelLanes::ZERO);
         let shown = is_back.select(PixelLanes::ONE - part, part).fast_min(PixelLanes::ONE);

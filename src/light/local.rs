@@ -2,7 +2,7 @@
 
 use super::reflection::{self, Fresnel, LEAST_COSINE, Reflectance};
 use super::surface_point::SurfacePoint;
-use crate::scene::{Finish, Light, Sky};
+use crate::scene::{Eye, Finish, Light, Sky};
 use glam::Vec3;
 
 /// The lights as one place of a surface sees them, in the frame of its texture: x along u, y along
@@ -43,7 +43,7 @@ pub struct Reflected {
 
 impl LocalLights {
     /// The lights at a point seen from `eye`. A surface seen from behind is lit on that side.
-    pub fn at(point: &SurfacePoint, eye: Vec3, lights: &[Light], sky: &Sky) -> Self {
+    pub fn at(point: &SurfacePoint, eye: Eye, lights: &[Light], sky: &Sky) -> Self {
         let axes = point.axes(eye);
         let [u, v, normal] = axes;
         let local = |w: Vec3| Vec3::new(u.dot(w), v.dot(w), normal.dot(w));
@@ -59,7 +59,7 @@ impl LocalLights {
             let is_point = matches!(light, Light::Point { .. });
             LocalLight { to_light: local(to_light), intensity, is_point }
         });
-        let to_eye = local((eye - point.position).normalize_or_zero());
+        let to_eye = local(eye.seen_from(point.position).normalize_or_zero());
         let (ambient, lights) = (sky.irradiance(normal), lights.collect());
         Self { ambient, occlusion: 1.0, lights, to_eye, axes }
     }

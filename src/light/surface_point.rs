@@ -1,5 +1,6 @@
 //! Where a surface is in the world, and how it lies.
 
+use crate::scene::Eye;
 use glam::Vec3;
 
 /// World-space place and frame of a surface point.
@@ -16,9 +17,9 @@ pub struct SurfacePoint {
 impl SurfacePoint {
     /// The unit axes of the texture's frame in the world: along u, along v, and off the surface on
     /// the eye's side. u and v may be oblique.
-    pub(crate) fn axes(&self, eye: Vec3) -> [Vec3; 3] {
+    pub(crate) fn axes(&self, eye: Eye) -> [Vec3; 3] {
         let normal = self.normal.normalize_or(Vec3::Z);
-        let normal = if normal.dot(eye - self.position) < 0.0 { -normal } else { normal };
+        let normal = if normal.dot(eye.seen_from(self.position)) < 0.0 { -normal } else { normal };
         unit_axes(self.tangents, normal)
     }
 }

@@ -69,6 +69,9 @@ pub struct MaterialOptions {
     /// Light that it sends out, linear RGB, 0 to 1e6; `None`: `Ke`, else 0; 1 in place of 0 where
     /// there is a texture of it.
     pub emissive: Option<Vec3>,
+    /// Whether it has holes where its file says so: by `map_d`, by the opacity of its colour image, or by
+    /// glTF's `alphaMode`; `None`: it has.
+    pub cut_out: Option<bool>,
 }
 
 impl MaterialOptions {
@@ -98,6 +101,7 @@ impl MaterialOptions {
             specular: self.specular.or(other.specular),
             roughness: self.roughness.or(other.roughness),
             emissive: self.emissive.or(other.emissive),
+            cut_out: self.cut_out.or(other.cut_out),
         }
     }
 }

@@ -53,6 +53,9 @@ pub(super) enum Kind {
         channel: Option<Channel>,
         range: [u32; 2],
         threshold: u32,
+        /// Whether an image that is nowhere there counts as opaque: where nothing but the image asks
+        /// for holes, all of its opacity may be unused.
+        may_be_unused: bool,
     },
 }
 
@@ -237,7 +240,7 @@ impl<'a> Planner<'a> {
         let normal = self.normal(material, bump_normal)?;
         let fallback = if albedo_clamped || height_clamped { Wrap::Clamp } else { Wrap::Repeat };
         let wrap = self.given(material).wrap.unwrap_or(fallback);
-        let numbers = self.numbers(material)?;
+        let numbers = self.numbers(material, albedo.as_ref())?;
         let plan = Plan::new([albedo, height, normal], numbers, wrap, depth);
         let has_maps = plan.maps().next().is_some();
         Ok(has_maps.then_some(plan))
@@ -269,26 +272,40 @@ impl<'a> Planner<'a> {
         Ok((found.map(|(_, path)| Map { path, kind: Kind::Color }), is_clamped))
     }
 
-    /// The opacity of cut-outs: the image's, or its brightness where it has none.
-    fn opacity(&mut self, material: &MtlMaterial) -> Result<Option<Map>> {
-        let name = material.name.escape_debug();
-        let opacity = material.opacity.unwrap_or(1.0).clamp(0.0, 1.0);
-        let Some((line, path)) = self.found(material.opacity_map.as_ref())? else {
-            if opacity < 1.0 {
-                self.warnings.push(format!("material {name}: d {opacity} is drawn opaque"));
-            }
+    /// The opacity of cut-outs: that of `map_d`, or its brightness; else that of the colour image.
+    fn opacity(&mut self, material: &MtlMaterial, albedo: Option<&Map>) -> Result<Option<Map>> {
+        if self.given(material).cut_out == Some(false) {
             return Ok(None);
+        }
+        let (name, limits) = (material.name.escape_debug(), self.options.image_limits());
+        let opacity = material.opacity.unwrap_or(1.0).clamp(0.0, 1.0);
+        let kind = |channel, range: [f32; 2], may_be_unused| {
+            let (range, threshold) = (range.map(f32::to_bits), CUT.to_bits());
+            Kind::Opacity { channel, range, threshold, may_be_unused }
         };
-        let has_opacity = decode::probe(&path, self.options.image_limits())?.has_opacity();
-        let channel = line.texture.channel.or(has_opacity.then_some(Channel::Matte));
-        let [base, gain] = line.texture.range.map(|number| number * opacity);
-        let (range, threshold) = ([base, gain].map(f32::to_bits), CUT.to_bits());
-        Ok(Some(Map { path, kind: Kind::Opacity { channel, range, threshold } }))
+        if let Some((line, path)) = self.found(material.opacity_map.as_ref())? {
+            let has_opacity = decode::probe(&path, limits)?.has_opacity();
+            let channel = line.texture.channel.or(has_opacity.then_some(Channel::Matte));
+            let range = line.texture.range.map(|number| number * opacity);
+            return Ok(Some(Map { path, kind: kind(channel, range, false) }));
+        }
+        if opacity < 1.0 {
+            self.warnings.push(format!("material {name}: d {opacity} is drawn opaque"));
+        }
+        let Some(Map { path, .. }) = albedo else { return Ok(None) };
+        if !decode::probe(path, limits)?.has_opacity() {
+            return Ok(None);
+        }
+        let file = path.file_name().unwrap_or_default().display();
+        let choice = format!("material {name}: holes where {file} has an opacity below {CUT}");
+        self.choices.push(choice);
+        let kind = kind(Some(Channel::Matte), [0.0, 1.0], true);
+        Ok(Some(Map { path: path.clone(), kind }))
     }
 
     /// Textures of a material's numbers; most are only asked for by lighting.
-    fn numbers(&mut self, material: &MtlMaterial) -> Result<Numbers> {
-        let opacity = self.opacity(material)?;
+    fn numbers(&mut self, material: &MtlMaterial, albedo: Option<&Map>) -> Result<Numbers> {
+        let opacity = self.opacity(material, albedo)?;
         if !self.options.keep_normals {
             return Ok(Numbers { opacity, ..Numbers::default() });
         }

@@ -119,9 +119,11 @@ fn textures(plans: &BTreeSet<Plan>, images: &mut BTreeMap<Map, MapImage>) -> Res
     let mut textures = Textures::new();
     for (map, wrap) in wanted {
         let texture = match (images.get(&map).cloned(), &map.kind) {
-            (Some(MapImage::Gray(image)), Kind::Opacity { threshold, .. }) => {
+            (Some(MapImage::Gray(image)), Kind::Opacity { threshold, may_be_unused, .. }) => {
                 let threshold = f32::from_bits(*threshold);
-                if image.texels.iter().all(|texel| f32::from(*texel) / 65535.0 >= threshold) {
+                let is_there = |texel: &u16| f32::from(*texel) / 65535.0 >= threshold;
+                let is_unused = *may_be_unused && !image.texels.iter().any(is_there);
+                if is_unused || image.texels.iter().all(is_there) {
                     // Without holes it need not be asked.
                     continue;
                 }

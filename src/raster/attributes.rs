@@ -82,13 +82,11 @@ impl<'a> PlaneMaker<'a> {
     fn fill_lanes(&self, planes: &mut [AttributePlanes], corners: &[Corners; 8]) {
         // Set up the planes from the corners before clipping and snapping, in f64: pieces of a
         // triangle then share them.
-        let rays = vectors(corners, |mesh, i| mesh.positions[i])
-            .map(|position| self.projection.rays(position));
-        let basis = BasisLanes::new(
-            rays.map(|ray| self.projection.views_from_rays(ray)),
-            self.projection.center,
-        );
-        let inverse_w = basis.inverse_w();
+        let from_eye = vectors(corners, |mesh, i| mesh.positions[i])
+            .map(|position| self.projection.as_seen(position));
+        let views = from_eye.map(|position| self.projection.views(position));
+        let basis = BasisLanes::new(views, &self.projection.lens);
+        let (inverse_w, nearness) = (basis.inverse_w(), basis.nearness());
         let tex_coords = vectors(corners, |mesh, i| {
             mesh.tex_coords.get(i).map_or(Vec3::ZERO, |uv| Vec3::new(uv.x, uv.y, 0.0))
         });
@@ -96,6 +94,7 @@ impl<'a> PlaneMaker<'a> {
         for (lane, planes) in planes.iter_mut().enumerate() {
             planes.triangle = corners[lane].triangle;
             planes.inverse_w = one(&inverse_w, lane);
+            planes.nearness = one(&nearness, lane);
             // Meshes with texture coordinates and without may meet in one vector, so each lane is
             // asked.
             let is_textured = !corners[lane].mesh.tex_coords.is_empty();
@@ -109,7 +108,8 @@ impl<'a> PlaneMaker<'a> {
         if corners.iter().any(|corners| self.needs_view(corners)) {
             let (normals, tangents) = frames(corners);
             let views = [0, 1, 2].map(|c| {
-                view_in_texture_frame(rays[c], normals[c], [tangents[0][c], tangents[1][c]])
+                let ray = self.projection.rays(from_eye[c]);
+                view_in_texture_frame(ray, normals[c], [tangents[0][c], tangents[1][c]])
             });
             let view = [0, 1, 2].map(|axis| basis.plane(views.map(|view| view[axis])));
             let planes =

@@ -6,6 +6,7 @@ use super::draw::{Drawn, Painter, Rasterizer, Shade, rows_by_tile};
 use super::edge::Rect;
 use super::gather::gather;
 use super::grid::TileGrid;
+use super::quad::QuadPair;
 use super::scratch::Scratch;
 use super::tile::NONE;
 use crate::frame::{Development, Pixel};
@@ -147,14 +148,11 @@ impl<'a> CenterTile<'a> {
     fn row(&self, column: usize, row: usize) -> CenterRow {
         let visibility = &self.scratch.visibility;
         let triangles = visibility.triangles(0, column, row);
-        // At a floor's horizon 1 / w may round to 0 or below: far away, and yet not the background.
-        let inverse_w =
-            visibility.inverse_w(0, column, row).fast_max(PixelLanes::splat(f32::MIN_POSITIVE));
         CenterRow {
             x: self.rect.min[0] + 8 * column as i32,
             y: self.rect.min[1] + row as i32,
             seen: !(triangles.simd_eq(u32x8::splat(NONE)).to_bitmask() as u8),
-            w: PixelLanes::ONE / inverse_w,
+            w: self.geometry.projection().distance(visibility.nearness(0, column, row)),
             triangles,
         }
     }
@@ -171,11 +169,14 @@ impl<'a> CenterTile<'a> {
         }
     }
 
-    /// Distance along the view at a pixel that sees a triangle, as in [`Self::rows`].
-    #[inline]
-    pub fn w(&self, [x, y]: [i32; 2]) -> f32 {
-        let [x, y] = [x - self.rect.min[0], y - self.rect.min[1]].map(|v| v as usize);
-        self.row(x / 8, y).w.as_array()[x % 8]
+    /// Distances along the view at the pixels of a pair that see a triangle, as in [`Self::rows`].
+    pub fn distances(&self, pair: &QuadPair) -> PixelLanes {
+        let mut distances = PixelLanes::ONE;
+        for lane in pair.covered() {
+            let [x, y] = [0, 1].map(|i| (pair.pixel(lane)[i] - self.rect.min[i]) as usize);
+            distances.as_mut_array()[lane] = self.row(x / 8, y).w.as_array()[x % 8];
+        }
+        distances
     }
 
     /// The quads that see something, material by material.

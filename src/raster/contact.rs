@@ -26,9 +26,9 @@ impl FollowScratch {
             let (samples, reaches) = (&mut self.samples, &self.reaches);
             let around = bounds(triangle, rect, offset_bounds(S as u32));
             cover::<S>(triangle, &around, &mut |row: Row| {
-                let (at, inverse_w) = buffer.row::<S>(&row, triangle.depth);
+                let (at, nearness) = buffer.row::<S>(&row, triangle.depth);
                 let (reach, own) = reaches[at];
-                let is_within = inverse_w.simd_gt(reach).to_bits() & !own.simd_eq(mesh);
+                let is_within = nearness.simd_gt(reach).to_bits() & !own.simd_eq(mesh);
                 let is_near = is_within & row.mask.cast_unsigned();
                 samples[at].is_asked |= is_near;
                 samples[at].is_followed |= is_near;
@@ -43,13 +43,13 @@ impl FollowScratch {
         deepest.extend((0..asked.list.len()).map(|local| {
             let corners = asked.follow.deepest(asked.triangle(local))?;
             let view = corners.map(|corner| corner.as_dvec3().to_array());
-            Some(ScreenBasis::new(view, asked.geometry.projection().center).inverse_w())
+            Some(ScreenBasis::new(view, &asked.geometry.projection().lens).nearness())
         }));
         reaches.clear();
         reaches.resize(samples.len(), (f32x8::splat(f32::INFINITY), u32x8::splat(NONE)));
         for (at, (reach, mesh)) in reaches.iter_mut().enumerate() {
             let triangles = buffer.triangles[at].to_array();
-            let depth = buffer.inverse_w[at].to_array();
+            let depth = buffer.nearness[at].to_array();
             for lane in 0..8 {
                 let local = triangles[lane] as usize;
                 let Some([a, b, c]) = deepest.get(local).copied().flatten() else { continue };

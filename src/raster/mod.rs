@@ -28,6 +28,7 @@ mod quad;
 mod scratch;
 mod small;
 mod tile;
+mod together;
 
 pub use behind::{Behind, Follow};
 pub use bin::Bins;

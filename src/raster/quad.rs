@@ -12,11 +12,13 @@ use crate::simd::{PixelLanes, set_bits};
 /// Everything that varies over one triangle.
 #[derive(Clone, Debug, Default)]
 pub struct AttributePlanes {
-    /// 1 / w, where w is the distance along the view.
+    /// 1 / w, where w is the distance along the view, or 1 where rays are parallel.
     pub inverse_w: Plane,
+    /// The nearness of [`Projection`](crate::geometry::Projection::nearness).
+    pub nearness: Plane,
     /// Texture coordinates over w.
     pub uv: [Plane; 2],
-    /// The ray from the eye in the texture frame over w: `(alpha, beta, gamma)` of `ray = alpha
+    /// The ray from the eye, or where rays are parallel their direction, in the texture frame over w: `(alpha, beta, gamma)` of `ray = alpha
     /// dP/du + beta dP/dv - gamma sqrt(|dP/du x dP/dv|) N`. `(0, 0, 1)` over w without texture
     /// coordinates.
     pub view: [Plane; 3],
@@ -70,7 +72,8 @@ pub struct QuadPair<'a> {
     pub coverage: [u8; 8],
     /// The triangles of both quads.
     pub planes: [&'a AttributePlanes; 2],
-    /// The distance along the view at the pixel centres.
+    /// What attributes at the pixel centres are multiplied with: the distance along the view, or 1
+    /// where rays are parallel.
     pub w: PixelLanes,
     /// Texture coordinates at the pixel centres, in repeats.
     pub uv: [PixelLanes; 2],

@@ -1,7 +1,7 @@
 //! Visibility of one tile: which triangle each sample sees, by depth.
 //!
-//! The buffers hold, sample by sample and row by row, eight pixels a lane vector: the nearest 1 /
-//! w, and the triangle's *local index*, its place in the tile's list. Lists are in the triangles'
+//! The buffers hold, sample by sample and row by row, eight pixels a lane vector: the greatest
+//! nearness, and the triangle's *local index*, its place in the tile's list. Lists are in the triangles'
 //! order, so the smaller local index is the earlier triangle, and it stays where depths are equal.
 //! All pieces of a clipped triangle go by the first one's index.
 
@@ -13,7 +13,7 @@ use crate::simd::{f32x8, i32x8, lane_indices, u32x8};
 
 /// No triangle.
 pub(super) const NONE: u32 = u32::MAX;
-/// Farther than any triangle: a floor's 1 / w may round to 0 or below at its horizon.
+/// Farther than any triangle: a floor's nearness may round to 0 or below at its horizon.
 pub(super) const FARTHEST: f32 = f32::NEG_INFINITY;
 
 /// What each sample of a tile sees.
@@ -23,7 +23,7 @@ pub(super) struct VisibilityBuffer {
     /// Lane vectors a row, and rows.
     num_columns: usize,
     num_rows: usize,
-    pub(super) inverse_w: Vec<f32x8>,
+    pub(super) nearness: Vec<f32x8>,
     pub(super) triangles: Vec<u32x8>,
     /// Depth of the farthest sample when last scanned; anything behind it is hidden: [`FARTHEST`]
     /// while a sample sees nothing.
@@ -34,7 +34,7 @@ pub(super) struct VisibilityBuffer {
 /// on.
 const FIRST_LOOK: usize = 32;
 
-/// What 1 / w may be off by as a sample has it and as a corner has it, as a share of the plane's
+/// What nearness may be off by as a sample has it and as a corner has it, as a share of the plane's
 /// terms.
 const ROUNDING: f32 = 1.0 / (1 << 20) as f32;
 
@@ -69,18 +69,18 @@ impl VisibilityBuffer {
         // Quads read two rows.
         self.num_rows = (rect.max[1] - rect.min[1] + 1) as usize & !1;
         let num = self.num_columns * self.num_rows * num_samples;
-        self.inverse_w.clear();
-        self.inverse_w.resize(num, f32x8::splat(FARTHEST));
+        self.nearness.clear();
+        self.nearness.resize(num, f32x8::splat(FARTHEST));
         self.triangles.clear();
         self.triangles.resize(num, u32x8::splat(NONE));
         self.hidden = FARTHEST;
     }
 
-    /// The least 1 / w that is stored.
+    /// The least nearness that is stored.
     #[inline(never)]
     fn farthest(&self) -> f32 {
         let least = self
-            .inverse_w
+            .nearness
             .iter()
             .fold(f32x8::splat(f32::INFINITY), |least, row| least.fast_min(*row));
         least.to_array().into_iter().fold(f32::INFINITY, f32::min)
@@ -122,12 +122,12 @@ impl VisibilityBuffer {
     ) {
         let index = u32x8::splat(index);
         cover::<S>(triangle, &bounds(triangle, rect, offset_bounds(S as u32)), &mut |row: Row| {
-            let (at, inverse_w) = self.row::<S>(&row, triangle.depth);
-            self.test(at, inverse_w, row.mask, index);
+            let (at, nearness) = self.row::<S>(&row, triangle.depth);
+            self.test(at, nearness, row.mask, index);
         });
     }
 
-    /// Where the samples of a row of eight pixels are kept, and the 1 / w of a plane there.
+    /// Where the samples of a row of eight pixels are kept, and the nearness of a plane there.
     #[inline(always)]
     pub(super) fn row<const S: usize>(
         &self,
@@ -140,26 +140,32 @@ impl VisibilityBuffer {
         // whatever the tiling.
         let x = lane_indices() + f32x8::splat(row.x as f32 + offset_x);
         let y = row.y as f32 + offset_y;
-        let inverse_w = x * f32x8::splat(dx) + f32x8::splat(y * dy) + f32x8::splat(constant);
+        let nearness = x * f32x8::splat(dx) + f32x8::splat(y * dy) + f32x8::splat(constant);
         let column = (row.x - self.origin[0]) as usize / 8;
-        (self.at(row.sample, column, (row.y - self.origin[1]) as usize), inverse_w)
+        (self.at(row.sample, column, (row.y - self.origin[1]) as usize), nearness)
     }
 
     /// Where on the screen, in pixels, a lane of the samples lies that are kept at an index.
     pub(super) fn place<const S: usize>(&self, at: usize, lane: usize) -> [f64; 2] {
+        let offset = sample_offsets(S as u32)[at / self.num_columns / self.num_rows];
+        let corner = self.corner(at, lane);
+        [0, 1].map(|i| corner[i] + f64::from(offset[i]) / 256.0)
+    }
+
+    /// The upper left corner of that lane's pixel.
+    pub(super) fn corner(&self, at: usize, lane: usize) -> [f64; 2] {
         let (row, column) = (at / self.num_columns, at % self.num_columns);
-        let offset = sample_offsets(S as u32)[row / self.num_rows];
         let pixel = [8 * column + lane, row % self.num_rows];
-        [0, 1].map(|i| f64::from(self.origin[i]) + pixel[i] as f64 + f64::from(offset[i]) / 256.0)
+        [0, 1].map(|i| f64::from(self.origin[i]) + pixel[i] as f64)
     }
 
     /// Keeps the nearer of what is stored and what is drawn.
     #[inline(always)]
-    fn test(&mut self, at: usize, inverse_w: f32x8, mask: i32x8, index: u32x8) {
-        let (stored, triangle) = (&mut self.inverse_w[at], &mut self.triangles[at]);
+    fn test(&mut self, at: usize, nearness: f32x8, mask: i32x8, index: u32x8) {
+        let (stored, triangle) = (&mut self.nearness[at], &mut self.triangles[at]);
         // At equal depths the earlier triangle stays. Selected by bits: no branch to guess wrong.
-        let is_nearer = inverse_w.simd_gt(*stored).to_bits() & mask.cast_unsigned();
-        *stored = f32x8::from_bits(is_nearer).bitselect(inverse_w, *stored);
+        let is_nearer = nearness.simd_gt(*stored).to_bits() & mask.cast_unsigned();
+        *stored = f32x8::from_bits(is_nearer).bitselect(nearness, *stored);
         *triangle = is_nearer.bitselect(index, *triangle);
     }
 
@@ -173,10 +179,10 @@ impl VisibilityBuffer {
         [self.num_columns, self.num_rows]
     }
 
-    /// The nearest 1 / w of eight pixels of a row at a sample; below any number where nothing is seen.
+    /// The nearness that eight pixels of a row see at a sample; below any number where that is nothing.
     #[inline(always)]
-    pub(super) fn inverse_w(&self, sample: usize, column: usize, row: usize) -> f32x8 {
-        self.inverse_w[self.at(sample, column, row)]
+    pub(super) fn nearness(&self, sample: usize, column: usize, row: usize) -> f32x8 {
+        self.nearness[self.at(sample, column, row)]
     }
 
     /// Local indices of the triangles that eight pixels of a row see at a sample, or [`NONE`].

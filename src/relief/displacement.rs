@@ -29,7 +29,8 @@ pub fn displacement(view: &[PixelLanes; 3], relief_depth: f32) -> [PixelLanes; 2
 /// ```
 ///
 /// So the hit is at `eye + R (1 + t S / gamma)`, and, since the distance along the view is linear
-/// on a ray, `w (1 + t S / gamma)` far away. Rays that are traced at [`MAX_SLOPE`] have the
+/// on a ray, `w (1 + t S / gamma)` far away; where rays are parallel `R` is their direction, and the hit
+/// `w + t S / gamma` far away. Rays that are traced at [`MAX_SLOPE`] have the
 /// `gamma` of that slope: the hit is then where the view ray is over the same place of the texture.
 pub fn stretch(view: &[PixelLanes; 3], relief_depth: f32) -> PixelLanes {
     let [alpha, beta, gamma] = *view;

@@ -22,7 +22,12 @@ pub struct HeightField {
     pub is_clamped: bool,
     base: Rows,
     maxima: Maxima,
+    /// Depths that no relief reaches, of nodes of blocks.
+    deepest: Maxima,
 }
+
+/// Cells a side of a block: those of the pyramid of depths, which is asked around places only.
+const BLOCK: usize = 4;
 
 impl HeightField {
     /// The heights of a surface.
@@ -37,12 +42,45 @@ impl HeightField {
             is_clamped: surface.wrap() == Wrap::Clamp,
             base: base.rows(false).clone(),
             maxima: Maxima::new([1, 1], |_, _| 0),
+            deepest: Maxima::new([1, 1], |_, _| 0),
         };
         let greatest = |x: usize, y: usize| {
             field.corners(x as i32, y as i32).into_iter().fold(0.0, f32::max) as u16
         };
         field.maxima = Maxima::new([w, h], greatest);
+        // The corners of these cells are all texels of a block, and those beyond it.
+        let cells =
+            |block: usize, end: usize| [0, 2, 3].map(|i| (block * BLOCK + i).min(end - 1) as i32);
+        let deepest = |x: usize, y: usize| {
+            let (columns, rows) = (cells(x, w), cells(y, h));
+            let all = rows.into_iter().flat_map(|y| columns.map(|x| field.corners(x, y)));
+            let least = all.flatten().fold(FULL_F32, f32::min);
+            (FULL_F32 - least) as u16
+        };
+        field.deepest = Maxima::new([w.div_ceil(BLOCK), h.div_ceil(BLOCK)], deepest);
         field
+    }
+
+    /// Whether all relief that is no farther from a place than so many repeats lies above a depth. It
+    /// may say no where that is so.
+    pub fn is_above(&self, uv: [f64; 2], around: [f64; 2], depth: f64) -> bool {
+        let texels = self.texels_per_repeat.map(f64::from);
+        let [at, reach] = [uv, around].map(|pair| [0, 1].map(|i| pair[i] * texels[i]));
+        // Nodes no smaller than the steps between the places that are looked at: none is left out.
+        let step = 0.5 * reach[0].max(reach[1]);
+        let size = |level: i32| (BLOCK << level) as f64;
+        let Some(level) = (0..self.deepest.num_levels()).find(|level| size(*level) >= step) else {
+            return false;
+        };
+        let nodes = |i: usize| {
+            [-1.0, -0.5, 0.0, 0.5, 1.0].map(|way| {
+                let cell = (at[i] - 0.5 + way * reach[i]).floor() as i32;
+                self.fold(i, cell).max(0) >> BLOCK.ilog2()
+            })
+        };
+        let (columns, rows) = (nodes(0), nodes(1));
+        let is_above = |node: [i32; 2]| f64::from(self.deepest.above_one(level, node)) <= depth;
+        rows.into_iter().all(|y| columns.into_iter().all(|x| is_above([x, y])))
     }
 
     /// Heights that no relief reaches, of nodes of cells.
@@ -69,6 +107,9 @@ impl HeightField {
     pub fn fold(&self, axis: usize, i: i32) -> i32 {
         if self.is_clamped {
             i.clamp(-1, self.size[axis] - 1)
+        } else if self.size[axis] & (self.size[axis] - 1) == 0 {
+            // As most are: without a division.
+            i & (self.size[axis] - 1)
         } else {
             i.rem_euclid(self.size[axis])
         }

@@ -195,7 +195,7 @@ impl Baked {
         let piece = (piece != NONE).then_some(piece as usize)?;
         let mesh = &scene.meshes[mesh as usize];
         let corner = mesh.positions[mesh.triangles[triangle as usize][0] as usize];
-        let to_eye = scene.camera.eye - corner;
+        let to_eye = scene.camera.viewpoint().seen_from(corner);
         Some((piece, usize::from(self.pieces[piece].frame.normal.dot(to_eye) < 0.0)))
     }
 }

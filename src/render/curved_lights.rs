@@ -56,8 +56,12 @@ impl CurvedLights {
             let Some(LitLanes { position, normal, tangent_u, tangent_v }) = pair.lit() else {
                 continue;
             };
-            let frame =
-                FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
+            let frame = FrameLanes::new(
+                &position,
+                &normal,
+                &[tangent_u, tangent_v],
+                scene.camera.viewpoint(),
+            );
             all.slants.extend(discs.iter().map(|(disc, _)| frame.slant(disc.to_middle)));
             if !places.is_empty() {
                 let ray = (displacement(&pair.view(), relief_depth), relief_depth);

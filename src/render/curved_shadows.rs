@@ -102,7 +102,8 @@ struct ViewRays {
 impl ViewRays {
     fn new(scene: &Scene, ground: &Ground, pair: &QuadPair) -> Option<Self> {
         let LitLanes { position, normal, tangent_u, tangent_v } = pair.lit()?;
-        let frame = FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.eye);
+        let frame =
+            FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.viewpoint());
         let (normal, shown) = (frame.axes[2], frame.shown);
         let relief_depth = ground.prepared.surface().relief_depth();
         let moved = displacement(&pair.view(), relief_depth);

@@ -84,6 +84,6 @@ impl Shader<'_> {
     ) -> Option<LocalLights> {
         let point = self.is_lit().then(|| surface_point(pair.planes[lane / 4], place))??;
         let Scene { camera, lights, sky, .. } = self.scene;
-        Some(LocalLights::at(&point, camera.eye, lights, sky))
+        Some(LocalLights::at(&point, camera.viewpoint(), lights, sky))
     }
 }

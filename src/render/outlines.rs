@@ -1,11 +1,10 @@
 //! The reliefs of a scene as rays go through them: where they end, and how deep they are.
 
-use crate::geometry::Projection;
+use crate::geometry::{Plane, Projection, ScreenBasis};
 use crate::light::SurfacePoint;
-use crate::raster::Behind;
 use crate::relief::HeightField;
-use crate::scene::Scene;
-use crate::shell::{Met, ReliefHit, Shell, ViewRay};
+use crate::scene::{Eye, Mesh, Scene};
+use crate::shell::{Met, Passable, ReliefHit, Shell, ViewRay, Width};
 use crate::simd::{PixelLanes, set_bits};
 use glam::{DVec3, Vec3};
 
@@ -13,9 +12,13 @@ use glam::{DVec3, Vec3};
 pub(crate) struct Outlines<'a> {
     scene: &'a Scene,
     projection: &'a Projection,
+    eye: Eye,
     /// Of each mesh that has any.
     reliefs: Vec<Option<Relief<'a>>>,
 }
+
+/// Where rays may pass that may do so all over a triangle: see [`Follow::passable`](crate::raster::Follow::passable).
+pub(super) const EVERYWHERE: Plane = [0.0, 0.0, -1.0];
 
 /// The relief of a mesh.
 pub(super) type Relief<'a> = (&'a Shell, &'a HeightField);
@@ -28,9 +31,16 @@ impl<'a> Outlines<'a> {
         projection: &'a Projection,
         reliefs: Vec<Option<Relief<'a>>>,
     ) -> Option<Self> {
-        let is_asked = |(shell, _): &Relief| scene.meshes.len() > 1 || shell.is_curved();
-        let has_any = reliefs.iter().flatten().any(is_asked);
-        has_any.then_some(Self { scene, projection, reliefs })
+        let is_asked = |(mesh, relief): (&Mesh, &Option<Relief>)| {
+            let is_curved = |(shell, _): &Relief| shell.is_curved();
+            // Holes are where rays hit the relief.
+            let is_cut = scene.cut_out(mesh).is_some();
+            relief.as_ref().is_some_and(|relief| is_cut || is_curved(relief))
+        };
+        let has_any = reliefs.iter().flatten().next().is_some() && scene.meshes.len() > 1
+            || scene.meshes.iter().zip(&reliefs).any(is_asked);
+        let eye = scene.camera.viewpoint();
+        has_any.then_some(Self { scene, projection, eye, reliefs })
     }
 
     /// Whether a mesh has a relief that is curved: followed rays then find what straight ones do not.
@@ -77,19 +87,14 @@ impl<'a> Outlines<'a> {
     /// What a ray through a place of the screen meets behind a triangle: without relief its polygon,
     /// however near.
     pub(crate) fn met(&self, triangle: [u32; 2], place: [f64; 2]) -> Met {
-        self.walk::<false>(triangle, place)
+        let [mesh, triangle] = triangle;
+        let Some((shell, field)) = self.reliefs[mesh as usize] else { return Met::Polygon };
+        shell.follow(&self.scene.meshes[mesh as usize], field, triangle, &self.ray(place))
     }
 
-    fn walk<const PROBES: bool>(&self, [mesh, triangle]: [u32; 2], place: [f64; 2]) -> Met {
-        let Some((shell, field)) = self.reliefs[mesh as usize] else { return Met::Polygon };
-        let mesh = &self.scene.meshes[mesh as usize];
-        let eye = self.scene.camera.eye.as_dvec3();
-        let ray = ViewRay { eye, direction: self.projection.direction(place) };
-        if PROBES {
-            shell.probe(mesh, field, triangle, &ray)
-        } else {
-            shell.follow(mesh, field, triangle, &ray)
-        }
+    fn ray(&self, place: [f64; 2]) -> ViewRay {
+        let (from, direction) = (self.projection.origin(place), self.projection.direction(place));
+        ViewRay { from, direction }
     }
 
     /// Whether a mesh has relief.
@@ -97,34 +102,51 @@ impl<'a> Outlines<'a> {
         self.reliefs[mesh as usize].is_some()
     }
 
-    /// Whether a ray from the eye may pass the relief of a triangle.
-    pub(super) fn may_be_passed(&self, [mesh, triangle]: [u32; 2]) -> bool {
-        self.reliefs[mesh as usize].is_some_and(|(shell, _)| {
-            let mesh = &self.scene.meshes[mesh as usize];
-            shell.may_be_passed(mesh, triangle, self.scene.camera.eye)
-        })
+    /// See [`Follow::passable`](crate::raster::Follow::passable).
+    pub(super) fn passable(&self, [mesh, triangle]: [u32; 2]) -> Option<Plane> {
+        let (shell, _) = self.reliefs[mesh as usize]?;
+        let mesh = &self.scene.meshes[mesh as usize];
+        let Passable { facing, cosine } = shell.passable(mesh, triangle, self.eye)?;
+        let corners = mesh.triangles[triangle as usize].map(|i| mesh.positions[i as usize]);
+        let view = corners.map(|corner| self.projection.view(corner));
+        if view.iter().any(|corner| corner.z < self.projection.near) {
+            return Some(EVERYWHERE);
+        }
+        // The product over the distance along the view is the cosine times the length of the ray there
+        // that goes 1 along the view: the longest is at a corner.
+        let lengths = corners.map(|corner| self.eye.seen_from(corner).length());
+        let longest = (0..3).fold(1.0_f32, |longest, i| {
+            if self.projection.is_orthographic() {
+                1.0
+            } else {
+                longest.max(lengths[i] / view[i].z)
+            }
+        });
+        let view = view.map(|corner| corner.as_dvec3().to_array());
+        let basis = ScreenBasis::new(view, &self.projection.lens);
+        let [a, b, c] = basis.plane(facing.map(f64::from));
+        Some([a, b, c - cosine * longest])
     }
 
     /// See [`Follow::deepest`](crate::raster::Follow::deepest).
     pub(super) fn deepest(&self, [mesh, triangle]: [u32; 2]) -> Option<[Vec3; 3]> {
         let (shell, _) = self.reliefs[mesh as usize]?;
         let mesh = &self.scene.meshes[mesh as usize];
-        let corners = shell.deepest(mesh, triangle, self.scene.camera.eye);
+        let corners = shell.deepest(mesh, triangle, self.eye);
         Some(corners.map(|corner| self.projection.view(corner)))
     }
 
     /// See [`Follow::probe`](crate::raster::Follow::probe).
-    pub(super) fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32> {
-        let met = self.walk::<true>(triangle, place);
+    pub(super) fn probe(
+        &self,
+        [mesh, triangle]: [u32; 2],
+        place: [f64; 2],
+        around: f64,
+    ) -> Option<f32> {
+        let (shell, field) = self.reliefs[mesh as usize]?;
+        let [at_eye, per_distance] = self.projection.pixel_size().map(|size| size * around);
+        let with = (&self.ray(place), Width { at_eye, per_distance });
+        let met = shell.probe(&self.scene.meshes[mesh as usize], field, triangle, with);
         if let Met::Relief(hit) = met { Some(hit.distance as f32) } else { None }
-    }
-
-    /// What the ray through a place of the screen meets behind a triangle.
-    pub(super) fn follow(&self, triangle: [u32; 2], place: [f64; 2]) -> Behind {
-        match self.met(triangle, place) {
-            Met::Relief(hit) => Behind::Surface(hit.distance as f32),
-            Met::Nothing(distance) => Behind::Nothing(distance as f32),
-            Met::Polygon => Behind::Surface(0.0),
-        }
     }
 }

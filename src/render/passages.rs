@@ -1,10 +1,10 @@
 //! Where rays pass what they meet: through holes of cut-outs, and by the relief at outlines.
 
-use super::outlines::Outlines;
-use crate::geometry::Projection;
+use super::outlines::{EVERYWHERE, Outlines};
+use crate::geometry::{Plane, Projection};
 use crate::raster::{Behind, Follow};
-use crate::scene::{Mesh, Scene};
-use crate::shell::is_seen_from_behind;
+use crate::scene::{Eye, Mesh, Scene};
+use crate::shell::{Met, is_seen_from_behind};
 use glam::{DVec2, DVec3, Vec3};
 
 /// Follows rays through a frame's holes and behind its reliefs.
@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3, Vec3};
 pub(crate) struct Passages<'a> {
     scene: &'a Scene,
     projection: &'a Projection,
+    eye: Eye,
     outlines: Option<&'a Outlines<'a>>,
 }
 
@@ -22,7 +23,7 @@ impl<'a> Passages<'a> {
         projection: &'a Projection,
         outlines: Option<&'a Outlines<'a>>,
     ) -> Option<Self> {
-        let all = Self { scene, projection, outlines };
+        let all = Self { scene, projection, eye: scene.camera.viewpoint(), outlines };
         let has_holes = scene.meshes.iter().any(|mesh| scene.cut_out(mesh).is_some());
         (outlines.is_some() || has_holes).then_some(all)
     }
@@ -32,8 +33,9 @@ impl<'a> Passages<'a> {
         self.scene.cut_out(&self.scene.meshes[mesh as usize]).is_some()
     }
 
-    /// How far along the view the ray through a place of the screen meets a hole of a triangle.
-    fn hole(&self, [mesh, triangle]: [u32; 2], pixel: [f64; 2]) -> Option<f64> {
+    /// How far along the view the ray through a place of the screen meets a hole of a triangle: where
+    /// it hits the relief, or else the polygon.
+    fn hole(&self, [mesh, triangle]: [u32; 2], pixel: [f64; 2], met: Option<&Met>) -> Option<f64> {
         let mesh = &self.scene.meshes[mesh as usize];
         let cut_out = self.scene.cut_out(mesh)?;
         let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
@@ -44,6 +46,10 @@ impl<'a> Passages<'a> {
             let next = at([pixel[0] + x, pixel[1] + y]);
             next.map_or([1e6; 2], |(next, _)| (next - uv).as_vec2().to_array())
         });
+        let (uv, distance) = match met {
+            Some(Met::Relief(hit)) => (DVec2::from(hit.place.uv), hit.distance),
+            _ => (uv, distance),
+        };
         let place = uv.as_vec2().to_array();
         let is_there = cut_out.is_there(place, [right, down], chance(triangle, pixel));
         (!is_there).then_some(distance)
@@ -58,7 +64,7 @@ impl<'a> Passages<'a> {
         place: [f64; 2],
     ) -> Option<(DVec2, f64)> {
         let [a, b, c] = corners.map(|i| mesh.positions[i].as_dvec3());
-        let [ab, ac, from] = [b - a, c - a, self.scene.camera.eye.as_dvec3() - a];
+        let [ab, ac, from] = [b - a, c - a, self.projection.origin(place) - a];
         let direction: DVec3 = self.projection.direction(place);
         // Shares of the corners by Cramer's rule.
         let across = direction.cross(ac);
@@ -89,28 +95,32 @@ impl Follow for Passages<'_> {
         self.outlines.is_some_and(|outlines| outlines.has_relief(mesh))
     }
 
-    fn may_be_passed(&self, triangle: [u32; 2]) -> bool {
-        self.is_cut(triangle[0])
-            || self.outlines.is_some_and(|outlines| outlines.may_be_passed(triangle))
+    fn passable(&self, triangle: [u32; 2]) -> Option<Plane> {
+        if self.is_cut(triangle[0]) { Some(EVERYWHERE) } else { self.outlines?.passable(triangle) }
     }
 
     fn is_seen_from_behind(&self, [mesh, triangle]: [u32; 2]) -> bool {
-        is_seen_from_behind(&self.scene.meshes[mesh as usize], triangle, self.scene.camera.eye)
+        is_seen_from_behind(&self.scene.meshes[mesh as usize], triangle, self.eye)
     }
 
     fn deepest(&self, triangle: [u32; 2]) -> Option<[Vec3; 3]> {
         self.outlines?.deepest(triangle)
     }
 
-    fn probe(&self, triangle: [u32; 2], place: [f64; 2]) -> Option<f32> {
+    fn probe(&self, triangle: [u32; 2], place: [f64; 2], around: f64) -> Option<f32> {
         // Following finds holes once and for all.
-        self.outlines.filter(|_| !self.is_cut(triangle[0]))?.probe(triangle, place)
+        self.outlines.filter(|_| !self.is_cut(triangle[0]))?.probe(triangle, place, around)
     }
 
     fn follow(&self, triangle: [u32; 2], place: [f64; 2]) -> Behind {
-        if let Some(distance) = self.hole(triangle, place) {
+        let met = self.outlines.map(|outlines| outlines.met(triangle, place));
+        if let Some(distance) = self.hole(triangle, place, met.as_ref()) {
             return Behind::Nothing(distance as f32);
         }
-        self.outlines.map_or(Behind::Surface(0.0), |outlines| outlines.follow(triangle, place))
+        match met {
+            Some(Met::Relief(hit)) => Behind::Surface(hit.distance as f32),
+            Some(Met::Nothing(distance)) => Behind::Nothing(distance as f32),
+            Some(Met::Polygon) | None => Behind::Surface(0.0),
+        }
     }
 }

@@ -33,7 +33,7 @@ impl Shader<'_> {
         let pixels = block.pairs().map(|pair| {
             let lit = pair.lit()?;
             let LitLanes { position, normal, tangent_u, tangent_v } = lit;
-            let eye = self.scene.camera.eye;
+            let eye = self.scene.camera.viewpoint();
             let frame = FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], eye);
             let places = places(&pair, ground, &lit, &frame.axes[2]);
             Some((places, frame.is_back.to_bitmask() as u8))

@@ -1,7 +1,7 @@
-//! The eye: a pinhole camera without lens or far plane.
+//! The eye: a pinhole camera without lens or far plane, or one whose rays are parallel.
 
 use crate::error::{Error, Result};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Sine and cosine of the 15 degrees from which [`Camera::framing`] looks down: enough to see the
 /// top of things.
@@ -47,10 +47,36 @@ impl Intrinsics {
     }
 }
 
-/// A pinhole camera. World space is right-handed.
+/// Where the rays of a camera come from: one place, or, where they are parallel, one direction.
+///
+/// Both are a point in homogeneous coordinates, `(place, share)`, with a share of 1 or 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eye {
+    /// A place in world units, or a direction to the eye of length one.
+    pub place: Vec3,
+    /// 1 for a place and 0 for a direction.
+    pub share: f32,
+}
+
+impl Eye {
+    /// The way from a world position to the eye; of length one where that is a direction.
+    #[inline(always)]
+    pub fn seen_from(&self, position: Vec3) -> Vec3 {
+        self.place - position * self.share
+    }
+
+    /// The same in f64.
+    #[inline(always)]
+    pub fn seen_from_exact(&self, position: DVec3) -> DVec3 {
+        self.place.as_dvec3() - position * f64::from(self.share)
+    }
+}
+
+/// A pinhole camera, or an [orthographic](Self::orthographic) one. World space is right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where the eye is, in world units.
+    /// Where the eye is, in world units; of an orthographic camera the middle of the picture, from
+    /// where distances along the view count.
     pub eye: Vec3,
     /// A point in the middle of the picture.
     pub target: Vec3,
@@ -61,6 +87,10 @@ pub struct Camera {
     /// Focal lengths and optical axis on the whole frame in pixels, in place of the field of view.
     /// Default: `None`, square pixels and the axis in the frame's middle.
     pub intrinsics: Option<Intrinsics>,
+    /// The picture's height in world units, 1e-9 to 1e9, of a camera whose rays are all parallel to the
+    /// view; in place of the field of view. Pixels are square, and the eye lies in the frame's middle.
+    /// Default: `None`, rays through one place.
+    pub orthographic: Option<f32>,
     /// Distance along the view, in world units, before which nothing is drawn. Default: 0.01.
     pub near: f32,
 }
@@ -73,6 +103,7 @@ impl Default for Camera {
             up: Vec3::Y,
             fov_degrees: 60.0,
             intrinsics: None,
+            orthographic: None,
             near: 0.01,
         }
     }
@@ -105,6 +136,14 @@ impl Camera {
         let forward = (self.target - self.eye).normalize();
         let right = forward.cross(self.up).normalize();
         [right, right.cross(forward), forward]
+    }
+
+    /// Where its rays come from.
+    pub fn viewpoint(&self) -> Eye {
+        match self.orthographic {
+            Some(_) => Eye { place: -self.axes()[2], share: 0.0 },
+            None => Eye { place: self.eye, share: 1.0 },
+        }
     }
 
     /// A camera from its pose, the matrix from the camera's axes to the world, row by row: its
@@ -146,10 +185,13 @@ impl Camera {
         Ok(Self { eye, target, up, ..self })
     }
 
-    /// Focal lengths and optical axis on a frame of so many pixels.
+    /// Focal lengths and optical axis on a frame of so many pixels; pixels per world unit in place of
+    /// focal lengths where the camera is orthographic.
     pub fn on_frame(&self, width: u32, height: u32) -> Intrinsics {
         self.intrinsics.unwrap_or_else(|| {
-            let focal = (f64::from(height) * 0.5 / self.tan_half_fov()) as f32;
+            let half =
+                self.orthographic.map_or_else(|| self.tan_half_fov(), |h| f64::from(h) * 0.5);
+            let focal = (f64::from(height) * 0.5 / half) as f32;
             let [cx, cy] = [width, height].map(|side| side as f32 * 0.5);
             Intrinsics { fx: focal, fy: focal, cx, cy }
         })
@@ -175,6 +217,12 @@ impl Camera {
             return refuse(
                 "focal lengths must be within 1e-3 to 1e6 pixels, the axis within -32768 to 65536",
             );
+        }
+        if self.orthographic.is_some_and(|height| !(1e-9..=1e9).contains(&height)) {
+            return refuse("an orthographic picture's height must be within 1e-9 to 1e9");
+        }
+        if self.orthographic.is_some() && self.intrinsics.is_some() {
+            return refuse("intrinsics are those of a pinhole camera, not of an orthographic one");
         }
         if !(self.near > 0.0 && self.near.is_finite()) {
             return refuse("near must be above 0");

@@ -12,7 +12,7 @@ mod sky;
 mod whole;
 
 pub use builtin::builtin;
-pub use camera::{Camera, Intrinsics, PoseAxes};
+pub use camera::{Camera, Eye, Intrinsics, PoseAxes};
 pub use cut_out::CutOut;
 pub use light::Light;
 pub use material::{Finish, Material, MaterialMaps};

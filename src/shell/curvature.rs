@@ -2,7 +2,8 @@
 //!
 //! A ray that enters a relief of depth `T` over a surface of normal curvature `k`, with the cosine
 //! `c` between the normal and the ray, gets `(1 - sqrt(1 - c^2)) / k` deep before it rises again. If
-//! that is more than `T`, it hits whatever the relief is.
+//! that is more than `T`, it hits whatever the relief is. Between their corners polygons lie below the
+//! surface that they stand for, by up to `k l^2 / 8` over a length `l`: so much is added to `T`.
 
 use super::neighbors::NONE;
 use crate::scene::Mesh;
@@ -52,7 +53,9 @@ fn bend(mesh: &Mesh, offsets: &[Vec3], triangle: [usize; 3]) -> [f32; 2] {
         if turn.length_squared() < 1e-10 {
             continue;
         }
-        let k = turn.dot(edge) / edge.length_squared() * depth;
+        let curvature = turn.dot(edge) / edge.length_squared();
+        let sag = curvature.abs() * edge.length_squared() * 0.125;
+        let k = curvature * (depth + sag);
         if k.is_finite() {
             most = [most[0].max(k), most[1].max(-k)];
         }

@@ -14,20 +14,25 @@ use glam::{DVec2, DVec3};
 /// Most triangles of a ray: only a mesh that is knotted has more; the ray then ends where it is.
 const MOST_TRIANGLES: usize = 4096;
 
-/// How much offsets at the corners of a triangle may differ for a piece to be straight, as a share
-/// of their length: a sixteenth of a prism's side.
-const STRAIGHT: f64 = 1.0 / 16.0;
-
-/// Most pieces of a prism.
-const MOST_PIECES: f64 = 16.0;
+/// How much farther around rays others are taken to go: prisms are narrower the deeper.
+const MARGIN: f64 = 1.25;
 
 /// A ray from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewRay {
     /// Where it begins.
-    pub eye: DVec3,
+    pub from: DVec3,
     /// Where it goes, of any length; distances are counted in it.
     pub direction: DVec3,
+}
+
+/// How far around a ray others go, in world units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Width {
+    /// Where it begins.
+    pub at_eye: f64,
+    /// More for each distance from there.
+    pub per_distance: f64,
 }
 
 /// What a ray that enters a relief meets.
@@ -67,6 +72,7 @@ struct Walk<'a> {
     mesh: &'a Mesh,
     field: &'a HeightField,
     ray: &'a ViewRay,
+    width: Width,
     /// Two axes across the ray.
     axes: [DVec3; 2],
     /// 1 where the mesh is seen from the front, -1 where its back shows relief on the other side.
@@ -84,13 +90,22 @@ struct Prism {
 impl Shell {
     /// What a ray meets that enters the relief of the mesh through a triangle, or beside it.
     pub fn follow(&self, mesh: &Mesh, field: &HeightField, triangle: u32, ray: &ViewRay) -> Met {
-        self.walk::<false>(mesh, field, triangle, ray)
+        self.walk::<false>(mesh, field, triangle, (ray, Width::default()))
     }
 
     /// The same where a place within the relief, not before the hit, will do: a few heights are
     /// looked at, and none between. What is said to be nothing may be a hit.
-    pub fn probe(&self, mesh: &Mesh, field: &HeightField, triangle: u32, ray: &ViewRay) -> Met {
-        self.walk::<true>(mesh, field, triangle, ray)
+    ///
+    /// All rays that are no farther from this one than `width` says hit relief, too, if they enter that
+    /// of the mesh before the place.
+    pub fn probe(
+        &self,
+        mesh: &Mesh,
+        field: &HeightField,
+        triangle: u32,
+        (ray, width): (&ViewRay, Width),
+    ) -> Met {
+        self.walk::<true>(mesh, field, triangle, (ray, width))
     }
 
     fn walk<const PROBES: bool>(
@@ -98,15 +113,19 @@ impl Shell {
         mesh: &Mesh,
         field: &HeightField,
         triangle: u32,
-        ray: &ViewRay,
+        (ray, width): (&ViewRay, Width),
     ) -> Met {
         let along = ray.direction.normalize_or(DVec3::Z);
         let (x, y) = along.any_orthonormal_pair();
         // Turned so that what is seen from the front is counter-clockwise.
-        let mut walk = Walk { shell: self, mesh, field, ray, axes: [y, x], side: 1.0 };
+        let mut walk = Walk { shell: self, mesh, field, ray, width, axes: [y, x], side: 1.0 };
         let prism = walk.prism(triangle);
         if prism.area(0.0) < 0.0 {
             walk.side = -1.0;
+        }
+        // Beside the triangle the ray may see it from another side than those that pass it do.
+        if width != Width::default() && walk.is_back(triangle) != (walk.side < 0.0) {
+            return Met::Nothing(0.0);
         }
         walk.run::<PROBES>(triangle)
     }
@@ -132,8 +151,8 @@ impl Walk<'_> {
                 return Met::Relief(hit);
             }
             if edge == 3 {
-                // At full depth every height is met.
-                return if goes_down {
+                // At full depth every height is met, but by probes of several rays.
+                return if goes_down && (!PROBES || self.width == Width::default()) {
                     Met::Relief(self.hit(&prism, &from))
                 } else {
                     Met::Nothing(self.distance(&prism, &from))
@@ -179,20 +198,22 @@ impl Walk<'_> {
         Some(prism)
     }
 
+    /// Whether a triangle is seen from behind where the ray begins.
+    fn is_back(&self, triangle: u32) -> bool {
+        let corners = self.mesh.triangles[triangle as usize];
+        let [a, b, c] = corners.map(|i| self.mesh.positions[i as usize].as_dvec3());
+        (b - a).cross(c - a).dot(self.ray.from - a) < 0.0
+    }
+
     fn prism(&self, triangle: u32) -> Prism {
         let Self { shell, mesh, ray, axes: [x, y], side, .. } = self;
         let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
         let across = |v: DVec3| DVec2::new(v.dot(*x), v.dot(*y));
-        let offsets = corners.map(|i| shell.offsets[i].as_dvec3() * *side);
-        let bend = (offsets[1] - offsets[0])
-            .length_squared()
-            .max((offsets[2] - offsets[0]).length_squared());
-        let bend = (bend / offsets[0].length_squared().max(f64::MIN_POSITIVE)).sqrt();
         Prism {
             triangle,
-            p: corners.map(|i| across(mesh.positions[i].as_dvec3() - ray.eye)),
-            o: offsets.map(across),
-            num_pieces: (bend / STRAIGHT).ceil().clamp(1.0, MOST_PIECES) as u32,
+            p: corners.map(|i| across(mesh.positions[i].as_dvec3() - ray.from)),
+            o: corners.map(|i| across(shell.offsets[i].as_dvec3() * *side)),
+            num_pieces: u32::from(shell.num_pieces[triangle as usize]),
         }
     }
 
@@ -220,7 +241,10 @@ impl Walk<'_> {
             }
             let to = self.point(prism, shares, depth);
             let part = match PROBES {
-                true => self.field.holds(&to.place).then_some(1.0),
+                true => [0.5, 1.0].into_iter().find(|part| {
+                    let place = from.place.toward(&to.place, *part);
+                    self.is_within(prism, &Point { shares: to.shares, place })
+                }),
                 false => self.field.first_hit(&from.place, &to.place),
             };
             if let Some(part) = part {
@@ -232,6 +256,20 @@ impl Walk<'_> {
             *from = to;
         }
         None
+    }
+
+    /// Whether a point lies in the relief, and so do those of the rays around this one.
+    fn is_within(&self, prism: &Prism, point: &Point) -> bool {
+        if !self.field.holds(&point.place) {
+            return false;
+        }
+        if self.width == Width::default() {
+            return true;
+        }
+        let around = self.width.at_eye + self.width.per_distance * self.distance(prism, point);
+        let corner = self.mesh.triangles[prism.triangle as usize][0] as usize;
+        let (depth, around) = self.shell.around(self.mesh, corner, around * MARGIN);
+        self.field.is_above(point.place.uv, around, point.place.depth - depth)
     }
 
     fn point(&self, prism: &Prism, shares: [f64; 3], depth: f64) -> Point {
@@ -253,7 +291,7 @@ impl Walk<'_> {
     /// How far from the eye a point is.
     fn distance(&self, prism: &Prism, at: &Point) -> f64 {
         let corners = self.mesh.triangles[prism.triangle as usize].map(|i| i as usize);
-        let mut place = -self.ray.eye;
+        let mut place = -self.ray.from;
         for (i, share) in corners.into_iter().zip(at.shares) {
             let down = self.shell.offsets[i].as_dvec3() * (at.place.depth * self.side);
             place += (self.mesh.positions[i].as_dvec3() + down) * share;
@@ -264,7 +302,7 @@ impl Walk<'_> {
     /// How far from the eye the first corner of a triangle is.
     fn distance_of(&self, triangle: u32) -> f64 {
         let corner = self.mesh.triangles[triangle as usize][0] as usize;
-        let from_eye = self.mesh.positions[corner].as_dvec3() - self.ray.eye;
+        let from_eye = self.mesh.positions[corner].as_dvec3() - self.ray.from;
         from_eye.dot(self.ray.direction) / self.ray.direction.length_squared()
     }
 }

@@ -20,5 +20,5 @@ mod follow;
 mod neighbors;
 mod prisms;
 
-pub use follow::{Met, ReliefHit, ViewRay};
-pub use prisms::{Shell, is_seen_from_behind};
+pub use follow::{Met, ReliefHit, ViewRay, Width};
+pub use prisms::{Passable, Shell, is_seen_from_behind};

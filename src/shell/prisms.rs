@@ -1,8 +1,15 @@
 //! What is known of a mesh with relief before a ray comes.
 
 use super::{curvature, neighbors};
-use crate::scene::Mesh;
+use crate::scene::{Eye, Mesh};
 use glam::Vec3;
+
+/// How much offsets at the corners of a triangle may differ for a piece to be straight, as a share
+/// of their length: a sixteenth of a prism's side.
+const STRAIGHT: f64 = 1.0 / 16.0;
+
+/// Most pieces of a prism.
+const MOST_PIECES: f64 = 16.0;
 
 /// The prisms of a mesh's relief.
 #[derive(Clone, Debug)]
@@ -15,7 +22,18 @@ pub struct Shell {
     /// Of each triangle, seen from the front and from behind: the square of the cosine between
     /// normal and ray below which a ray may pass the relief.
     limits: Vec<[f32; 2]>,
+    /// Of each triangle, how many pieces a ray within its prism is cut into.
+    pub(super) num_pieces: Vec<u8>,
     is_curved: bool,
+}
+
+/// Where a triangle is seen flat enough for a ray to pass its relief.
+#[derive(Clone, Copy, Debug)]
+pub struct Passable {
+    /// At the corners, the normal on the side that is seen times the way to the eye.
+    pub facing: [f32; 3],
+    /// The cosine between both below which rays may pass.
+    pub cosine: f32,
 }
 
 impl Shell {
@@ -30,7 +48,9 @@ impl Shell {
         let neighbors = neighbors::find(mesh);
         let limits = curvature::limits(mesh, &offsets, &neighbors);
         let is_curved = limits.iter().flatten().any(|limit| *limit > 0.0);
-        Self { offsets, neighbors, limits, is_curved }
+        let num_pieces = mesh.triangles.iter().map(|triangle| num_pieces(&offsets, triangle));
+        let num_pieces = num_pieces.collect();
+        Self { offsets, neighbors, limits, num_pieces, is_curved }
     }
 
     /// Whether rays may pass any of its relief.
@@ -38,38 +58,52 @@ impl Shell {
         self.is_curved
     }
 
-    /// Whether a ray from the eye through a triangle may pass its relief.
-    pub fn may_be_passed(&self, mesh: &Mesh, triangle: u32, eye: Vec3) -> bool {
+    /// Where rays from the eye through a triangle may pass its relief, if they may anywhere.
+    pub fn passable(&self, mesh: &Mesh, triangle: u32, eye: Eye) -> Option<Passable> {
         let limits = self.limits[triangle as usize];
         if limits == [0.0; 2] {
-            return false;
+            return None;
         }
-        let cosines = mesh.triangles[triangle as usize].map(|i| {
-            let to_eye = (eye - mesh.positions[i as usize]).normalize_or_zero();
-            to_eye.dot(mesh.normals[i as usize])
+        let is_back = is_seen_from_behind(mesh, triangle, eye);
+        let (side, limit) = if is_back { (-1.0, limits[1]) } else { (1.0, limits[0]) };
+        let mut least = f32::MAX;
+        let facing = mesh.triangles[triangle as usize].map(|i| {
+            let to_eye = eye.seen_from(mesh.positions[i as usize]);
+            let facing = to_eye.dot(mesh.normals[i as usize]) * side;
+            least = least.min(facing / to_eye.length());
+            facing
         });
-        let [least, most] =
-            cosines.iter().fold([f32::MAX, f32::MIN], |[a, b], c| [a.min(*c), b.max(*c)]);
-        if least > 0.0 {
-            least * least < limits[0]
-        } else if most < 0.0 {
-            most * most < limits[1]
-        } else {
-            true
-        }
+        let may_be_passed = least <= 0.0 || least * least < limit;
+        may_be_passed.then(|| Passable { facing, cosine: limit.sqrt() })
+    }
+
+    /// What a distance in the world is, at a vertex, as a depth and in repeats along u and v.
+    pub(super) fn around(&self, mesh: &Mesh, vertex: usize, distance: f64) -> (f64, [f64; 2]) {
+        let [u, v] = mesh.tangents[vertex].map(|tangent| tangent.as_dvec3());
+        let area = u.cross(v).length();
+        let depth = distance / self.offsets[vertex].as_dvec3().length();
+        (depth, [v, u].map(|other| distance * other.length() / area))
     }
 
     /// Where the corners of a triangle have their deepest relief, as it is seen from the eye.
-    pub fn deepest(&self, mesh: &Mesh, triangle: u32, eye: Vec3) -> [Vec3; 3] {
+    pub fn deepest(&self, mesh: &Mesh, triangle: u32, eye: Eye) -> [Vec3; 3] {
         let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
         let side = if is_seen_from_behind(mesh, triangle, eye) { -1.0 } else { 1.0 };
         corners.map(|i| mesh.positions[i] + self.offsets[i] * side)
     }
 }
 
+/// How many pieces of a ray are straight in the texture within the prism of a triangle.
+fn num_pieces(offsets: &[Vec3], triangle: &[u32; 3]) -> u8 {
+    let [a, b, c] = triangle.map(|i| offsets[i as usize].as_dvec3());
+    let bend = (b - a).length_squared().max((c - a).length_squared());
+    let bend = (bend / a.length_squared().max(f64::MIN_POSITIVE)).sqrt();
+    (bend / STRAIGHT).ceil().clamp(1.0, MOST_PIECES) as u8
+}
+
 /// Whether a triangle of a mesh is seen from behind.
-pub fn is_seen_from_behind(mesh: &Mesh, triangle: u32, eye: Vec3) -> bool {
+pub fn is_seen_from_behind(mesh: &Mesh, triangle: u32, eye: Eye) -> bool {
     let [a, b, c] =
         mesh.triangles[triangle as usize].map(|i| mesh.positions[i as usize].as_dvec3());
-    (b - a).cross(c - a).dot(eye.as_dvec3() - a) < 0.0
+    (b - a).cross(c - a).dot(eye.seen_from_exact(a)) < 0.0
 }

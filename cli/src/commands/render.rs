@@ -197,7 +197,7 @@ impl Job<'_> {
         loaded.choices.iter().for_each(|choice| progress.say(choice));
         loaded.warnings.iter().for_each(|warning| progress.warn(warning));
         let camera = loaded.scene.camera;
-        let cameras = self.sequence.cameras(camera);
+        let cameras = self.sequence.cameras(camera)?;
         for (number, _) in self.pictures.iter().filter(|_| self.sequence.is_numbered()) {
             cameras
                 .camera(*number)
@@ -223,7 +223,7 @@ impl Job<'_> {
         renderer: &mut Renderer,
         report: &dyn Fn(Vec<Took>) -> Report,
     ) -> Result<Vec<Took>, Refusal> {
-        let cameras = self.sequence.cameras(renderer.scene().camera);
+        let cameras = self.sequence.cameras(renderer.scene().camera)?;
         let mut all = Vec::new();
         for (i, (number, path)) in self.pictures.iter().enumerate() {
             renderer.set_camera(cameras.camera(*number))?;

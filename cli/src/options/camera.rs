@@ -33,6 +33,10 @@ pub(crate) struct CameraOptions {
     #[arg(long, value_name = "FX,FY,CX,CY", value_parser = values::intrinsics, allow_hyphen_values = true)]
     #[serde(deserialize_with = "file_values::intrinsics")]
     intrinsics: Option<[f32; 4]>,
+    /// Draw with parallel rays a picture so high, in the scene's units; in place of --fov
+    #[arg(long, value_name = "HEIGHT", value_parser = values::picture_height, allow_hyphen_values = true, conflicts_with_all = ["fov", "intrinsics"])]
+    #[serde(deserialize_with = "file_values::picture_height")]
+    orthographic: Option<f32>,
     /// Where the camera is and how it lies: the 4x4 matrix from its axes to the world, 16 numbers
     /// row by row; in place of --eye, --target and --up
     #[arg(long, value_name = "M11,M12,...,M44", value_parser = values::pose, allow_hyphen_values = true, conflicts_with_all = ["eye", "target", "up"])]
@@ -51,13 +55,14 @@ pub(crate) struct CameraOptions {
 impl From<&Camera> for CameraOptions {
     /// Options that give all of `camera`.
     fn from(camera: &Camera) -> Self {
-        let Camera { eye, target, up, fov_degrees, intrinsics, near } = *camera;
+        let Camera { eye, target, up, fov_degrees, intrinsics, orthographic, near } = *camera;
         Self {
             eye: Some(eye),
             target: Some(target),
             up: Some(up),
-            fov: Some(fov_degrees),
+            fov: orthographic.is_none().then_some(fov_degrees),
             intrinsics: intrinsics.map(|Intrinsics { fx, fy, cx, cy }| [fx, fy, cx, cy]),
+            orthographic,
             // The eye, target and up say the same.
             pose: None,
             pose_axes: None,
@@ -70,6 +75,9 @@ impl CameraOptions {
     /// Refuses what contradicts itself; on the command line the options' own rules do.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         let is_placed = self.eye.is_some() || self.target.is_some() || self.up.is_some();
+        if self.orthographic.is_some() && (self.fov.is_some() || self.intrinsics.is_some()) {
+            return Err("orthographic takes the place of fov and intrinsics");
+        }
         match self.pose {
             Some(_) if is_placed => Err("a pose takes the place of eye, target and up"),
             None if self.pose_axes.is_some() => Err("pose-axes needs a pose"),
@@ -77,8 +85,15 @@ impl CameraOptions {
         }
     }
 
-    /// Drops a pose where `over` says where the eye is, and the other way round.
+    /// Drops a pose where `over` says where the eye is, and the other way round, and parallel rays
+    /// where it says how others go.
     pub(crate) fn make_way_for(&mut self, over: &Self) {
+        if over.orthographic.is_some() {
+            (self.fov, self.intrinsics) = (None, None);
+        }
+        if over.fov.is_some() || over.intrinsics.is_some() {
+            self.orthographic = None;
+        }
         if over.pose.is_some() {
             (self.eye, self.target, self.up) = (None, None, None);
         }
@@ -90,12 +105,16 @@ impl CameraOptions {
     /// A camera with what these say.
     pub(crate) fn placed(&self, start: &Camera) -> Camera {
         let intrinsics = self.intrinsics.map(|[fx, fy, cx, cy]| Intrinsics { fx, fy, cx, cy });
+        // Parallel rays and others take each other's place.
+        let is_pinhole = self.fov.is_some() || intrinsics.is_some();
+        let (of_start, is_parallel) = (start.orthographic, self.orthographic.is_some());
         let mut camera = Camera {
             eye: self.eye.unwrap_or(start.eye),
             target: self.target.unwrap_or(start.target),
             up: self.up.unwrap_or(start.up),
             fov_degrees: self.fov.unwrap_or(start.fov_degrees),
-            intrinsics: intrinsics.or(start.intrinsics),
+            intrinsics: intrinsics.or(start.intrinsics.filter(|_| !is_parallel)),
+            orthographic: self.orthographic.or(of_start.filter(|_| !is_pinhole)),
             near: self.near.unwrap_or(start.near),
         };
         if let Some(pose) = &self.pose {

@@ -102,6 +102,19 @@ mod tests {
     }
 
     #[test]
+    fn lenses_take_each_others_place() {
+        let start = Camera { orthographic: Some(2.0), ..Camera::default() };
+        let text = "{}\n{\"fov\": 20}\n{\"intrinsics\": [8, 8, 12, 8]}\n{\"orthographic\": 3}\n";
+        let cameras = list(text).unwrap();
+        let found = [1, 2, 3, 4].map(|frame| cameras.camera(frame, &start).orthographic);
+        assert_eq!(found, [Some(2.0), None, None, Some(3.0)]);
+        let posed = cameras.camera(3, &Camera::default());
+        let parallel = cameras.camera(4, &posed);
+        assert!(posed.intrinsics.is_some() && parallel.intrinsics.is_none());
+        assert!(parallel.validate().is_ok());
+    }
+
+    #[test]
     fn mistakes_are_refused_with_their_line() {
         for (text, words) in [
             ("", "has no camera"),
@@ -112,6 +125,8 @@ mod tests {
             ("{\"pose\": [[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}\n", "rotation"),
             ("{\"pose\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]], \"up\": [0,1,0]}", "pose"),
             ("{\"pose-axes\": \"opencv\"}\n", "pose"),
+            ("{\"orthographic\": 0}\n", "cameras.jsonl:1: must be within"),
+            ("{\"orthographic\": 2, \"fov\": 3}\n", "takes the place of fov"),
             ("7\n", "cameras.jsonl:1: invalid type"),
         ] {
             let refusal = list(text).err().unwrap();

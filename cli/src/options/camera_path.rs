@@ -41,9 +41,12 @@ struct Key {
     up: Option<Vec3>,
     #[serde(default, deserialize_with = "file_values::field_of_view")]
     fov: Option<f32>,
+    #[serde(default, deserialize_with = "file_values::picture_height")]
+    orthographic: Option<f32>,
 }
 
-/// Eye, target, up, and the field of view in the first component.
+/// Eye, target, up, and the field of view in the first component, or the picture's height where rays are
+/// parallel.
 type Place = [DVec3; 4];
 
 /// Keyframes in order.
@@ -82,11 +85,26 @@ impl CameraPath {
     }
 
     /// Where the camera is at the keys, from `start` on.
-    pub(crate) fn places(&self, start: &Camera) -> Places {
-        let mut place = [start.eye, start.target, start.up, Vec3::new(start.fov_degrees, 0.0, 0.0)]
-            .map(Vec3::as_dvec3);
+    ///
+    /// # Errors
+    /// Says which key gives what such a camera does not have.
+    pub(crate) fn places(&self, start: &Camera) -> Result<Places, Refusal> {
+        let is_parallel = start.orthographic.is_some();
+        let opening = start.orthographic.unwrap_or(start.fov_degrees);
+        let mut place =
+            [start.eye, start.target, start.up, Vec3::new(opening, 0.0, 0.0)].map(Vec3::as_dvec3);
+        for Key { frame, fov, orthographic, .. } in &self.keys {
+            let (wrong, is_given) = match is_parallel {
+                true => ("fov, but the camera is orthographic", fov.is_some()),
+                false => ("orthographic, but the camera is not", orthographic.is_some()),
+            };
+            if is_given {
+                return Err(format!("camera path: the key of frame {frame} gives {wrong}").into());
+            }
+        }
         let at_keys = self.keys.iter().map(|key| {
-            let given = [key.eye, key.target, key.up, key.fov.map(|fov| Vec3::new(fov, 0.0, 0.0))];
+            let opening = key.fov.or(key.orthographic);
+            let given = [key.eye, key.target, key.up, opening.map(|of| Vec3::new(of, 0.0, 0.0))];
             place
                 .iter_mut()
                 .zip(given)
@@ -95,7 +113,7 @@ impl CameraPath {
         });
         let keys: Vec<(f64, Place)> = at_keys.collect();
         let slopes = (0..keys.len()).map(|i| slope(&keys, i)).collect();
-        Places { keys, slopes, start: *start }
+        Ok(Places { keys, slopes, start: *start })
     }
 }
 
@@ -113,12 +131,16 @@ impl Places {
         let frame = f64::from(frame);
         let end =
             self.keys.partition_point(|key| key.0 < frame).clamp(1, self.keys.len().max(2) - 1);
-        let [eye, target, up, fov] = match self.keys.get(end) {
+        let [eye, target, up, opening] = match self.keys.get(end) {
             Some(_) => self.between(end - 1, frame),
             None => self.keys[0].1,
         };
-        let [eye, target, up, fov] = [eye, target, up, fov].map(|v| v.as_vec3());
-        Camera { eye, target, up, fov_degrees: fov.x, ..self.start }
+        let [eye, target, up, opening] = [eye, target, up, opening].map(|v| v.as_vec3());
+        let camera = Camera { eye, target, up, ..self.start };
+        match self.start.orthographic {
+            Some(_) => Camera { orthographic: Some(opening.x), ..camera },
+            None => Camera { fov_degrees: opening.x, ..camera },
+        }
     }
 
     /// The cubic Hermite curve from key `i` to the next.
@@ -174,7 +196,7 @@ mod tests {
     #[test]
     fn path_goes_through_its_keys() {
         let start = Camera { near: 0.25, ..Camera::default() };
-        let places = path(KEYS).unwrap().places(&start);
+        let places = path(KEYS).unwrap().places(&start).unwrap();
         let eyes =
             [(1, [0.0, 1.0, 4.0], 60.0), (11, [3.0, 1.0, 4.0], 40.0), (41, [3.0, 2.0, 0.0], 40.0)];
         for (frame, eye, fov_degrees) in eyes {
@@ -189,8 +211,20 @@ mod tests {
     }
 
     #[test]
+    fn heights_of_parallel_rays_have_keys() {
+        let start = Camera { orthographic: Some(2.0), ..Camera::default() };
+        let keys = "[[key]]\nframe = 1\n[[key]]\nframe = 3\northographic = 4\n";
+        let places = path(keys).unwrap().places(&start).unwrap();
+        let heights = [1, 2, 3].map(|frame| places.camera(frame).orthographic);
+        assert_eq!(heights, [2.0, 3.0, 4.0].map(Some));
+        let refusal = path(KEYS).unwrap().places(&start).err().unwrap().to_string();
+        assert!(refusal.contains("frame 11 gives fov"), "{refusal}");
+        assert!(path(keys).unwrap().places(&Camera::default()).is_err());
+    }
+
+    #[test]
     fn path_is_smooth() {
-        let places = path(KEYS).unwrap().places(&Camera::default());
+        let places = path(KEYS).unwrap().places(&Camera::default()).unwrap();
         let eyes: Vec<Vec3> = (1..=50).map(|frame| places.camera(frame).eye).collect();
         let steps: Vec<Vec3> = eyes.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let jolt = steps.windows(2).map(|pair| (pair[1] - pair[0]).length()).fold(0.0, f32::max);
@@ -201,8 +235,10 @@ mod tests {
 
     #[test]
     fn one_key_is_a_path() {
-        let places =
-            path("[[key]]\nframe = 7\neye = [1, 2, 3]\n").unwrap().places(&Camera::default());
+        let places = path("[[key]]\nframe = 7\neye = [1, 2, 3]\n")
+            .unwrap()
+            .places(&Camera::default())
+            .unwrap();
         assert_eq!(places.camera(7).eye, Vec3::new(1.0, 2.0, 3.0));
     }
 

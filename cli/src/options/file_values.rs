@@ -24,6 +24,7 @@ checked! {
     crease_angle: f32, check::crease_angle;
     field_of_view: f32, check::field_of_view;
     intrinsics: [f32; 4], check::intrinsics;
+    picture_height: f32, check::picture_height;
     pose: Pose, check::pose;
     turn: f32, check::turn;
     unit: f32, check::unit;

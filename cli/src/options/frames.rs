@@ -18,7 +18,7 @@ pub(crate) struct FramesOptions {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), conflicts_with = "camera_path")]
     turntable: Option<u32>,
     /// Draw the frames of a camera that moves smoothly along the [[key]] entries of a TOML file:
-    /// frame, and any of eye, target, up and fov
+    /// frame, and any of eye, target, up and fov (or orthographic)
     #[arg(long, value_name = "FILE")]
     camera_path: Option<PathBuf>,
     /// Draw a frame for each line of a file (-: stdin), an object of JSON with the keys eye, target,
@@ -166,13 +166,16 @@ impl Sequence {
     }
 
     /// The cameras of the frames, from that of the scene.
-    pub(crate) fn cameras(&self, start: Camera) -> Cameras<'_> {
-        match &self.motion {
+    ///
+    /// # Errors
+    /// Says what of a camera path such a camera does not have.
+    pub(crate) fn cameras(&self, start: Camera) -> Result<Cameras<'_>, Refusal> {
+        Ok(match &self.motion {
             Motion::Still => Cameras::Still(start),
             Motion::Turntable(num) => Cameras::Turntable(start, *num),
-            Motion::Path(path) => Cameras::Path(path.places(&start)),
+            Motion::Path(path) => Cameras::Path(path.places(&start)?),
             Motion::List(list) => Cameras::List(start, list),
-        }
+        })
     }
 }
 

@@ -108,6 +108,10 @@ pub(crate) struct MapOptions {
     #[arg(long, value_name = "R[,G,B]", value_parser = values::intensity, allow_hyphen_values = true, requires = "model")]
     #[serde(deserialize_with = "file_values::intensity")]
     emissive: Option<Vec3>,
+    /// Whether surfaces have holes where the opacity of their images is low; off: they are solid
+    /// [default: on]
+    #[arg(long, value_name = "on|off", hide_possible_values = true, value_parser = one_of(ON_OFF), requires = "model")]
+    cut_out: Option<bool>,
 }
 
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -280,6 +284,7 @@ impl MapOptions {
             specular: self.specular,
             roughness: self.roughness,
             emissive: self.emissive,
+            cut_out: self.cut_out,
         }
     }
 }

@@ -7,7 +7,8 @@
 //! relief-depth = 0.04
 //! [material.brick]                # the same keys for the material of that name
 //! height = "brick_height.png"
-//! [camera]                        # --eye, --target, --up, --fov, --intrinsics, --pose, --near
+//! [camera]                        # --eye, --target, --up, --fov, --intrinsics, --orthographic,
+//!                                 # --pose, --near
 //! eye = [3.0, 2.0, 5.0]
 //! [light]                         # --sky, --background, and lights
 //! background = "skyblue"

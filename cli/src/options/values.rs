@@ -71,6 +71,11 @@ pub(crate) fn crease_angle(text: &str) -> Result<f32, String> {
     check::crease_angle(number(text)?)
 }
 
+/// The height of an orthographic picture.
+pub(crate) fn picture_height(text: &str) -> Result<f32, String> {
+    check::picture_height(number(text)?)
+}
+
 /// A number above 0.
 pub(crate) fn above_zero(text: &str) -> Result<f32, String> {
     check::above_zero(number(text)?)
@@ -219,6 +224,13 @@ pub(crate) mod check {
             Ok(value)
         } else {
             Err("must be within 0 to 180 degrees".into())
+        }
+    }
+
+    pub(crate) fn picture_height(value: f32) -> Result<f32, String> {
+        match (Camera { orthographic: Some(value), ..Camera::default() }).validate() {
+            Ok(()) => Ok(value),
+            Err(_) => Err("must be within 1e-9 to 1e9".into()),
         }
     }
 

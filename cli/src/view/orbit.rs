@@ -50,7 +50,10 @@ impl Orbit {
             self.camera.target + (level * self.pitch.cos() + up * self.pitch.sin()) * self.distance;
         // Close to a surface the near plane must come along.
         let near = self.camera.near * (self.distance / self.first_distance).min(1.0);
-        Camera { eye, near, ..self.camera }
+        // With parallel rays nothing gets larger by going nearer: the picture shows less.
+        let nearer = self.distance / self.first_distance;
+        let orthographic = self.camera.orthographic.map(|height| height * nearer);
+        Camera { eye, near, orthographic, ..self.camera }
     }
 
     /// Turns by radians around the vertical and up.
@@ -63,7 +66,9 @@ impl Orbit {
     pub(crate) fn pan(&mut self, right: f32, up: f32) {
         let camera = self.camera();
         let [x, y, _] = camera.axes();
-        let height = 2.0 * self.distance * (camera.fov_degrees.to_radians() * 0.5).tan();
+        let height = camera
+            .orthographic
+            .unwrap_or_else(|| 2.0 * self.distance * (camera.fov_degrees.to_radians() * 0.5).tan());
         self.camera.target += (x * right + y * up) * height;
     }
 

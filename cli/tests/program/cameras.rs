@@ -62,11 +62,38 @@ fn scene_files_hold_poses_and_options_take_their_place() {
 }
 
 #[test]
+fn parallel_rays_take_the_place_of_others() {
+    let folder = Folder::new();
+    let view = "--eye 0.5,0.25,3 --target 0.5,0.25,0";
+    folder.succeeds(&format!("{SMALL} {view} --orthographic 1 -o a.png --layer depth=a.npy"));
+    // From another distance the same is seen.
+    folder.succeeds(&format!(
+        "{SMALL} --eye 0.5,0.25,9 --target 0.5,0.25,0 --orthographic 1 -o b.png"
+    ));
+    folder.put("fov.toml", "model = \"quad.obj\"\n[camera]\nfov = 20\n");
+    let small = "-q --size 24x16 -f nearest";
+    folder.succeeds(&format!("fov.toml {small} {view} --orthographic 1 -o c.png"));
+    folder.put("parallel.toml", "model = \"quad.obj\"\n[camera]\northographic = 1\n");
+    folder.succeeds(&format!("parallel.toml {small} {view} -o d.png"));
+    folder.put("both.toml", "model = \"quad.obj\"\n[camera]\northographic = 1\nfov = 20\n");
+    folder.refuses(&format!("both.toml {small}"), &["both.toml: orthographic takes the place"]);
+    let read = |name: &str| fs::read(folder.path(name)).unwrap();
+    let [a, b, c, d] = ["a.png", "b.png", "c.png", "d.png"].map(read);
+    assert!(a == b && b == c && c == d);
+    // And options take the place of the file's.
+    folder.succeeds(&format!("parallel.toml {small} {view} --fov 20 -o e.png"));
+    folder.succeeds(&format!("fov.toml {small} {view} -o f.png"));
+    assert!(read("e.png") == read("f.png") && read("e.png") != a);
+}
+
+#[test]
 fn what_is_no_camera_is_refused() {
     let folder = Folder::new();
     for (options, words) in [
         ("--intrinsics 1,2,3", "four numbers"),
         ("--intrinsics 0,2,3,4", "focal lengths"),
+        ("--orthographic 0", "--orthographic"),
+        ("--orthographic 2 --fov 30", "--fov"),
         ("--pose 1,2,3", "16 numbers"),
         ("--pose 2,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1", "rotation"),
         ("--pose-axes opengl", "--pose"),

@@ -271,7 +271,7 @@ fn every_option_is_accepted() {
         "quad.obj -o a.png --size 8x8 --filter visible --visible resolved --parallax on --derivatives flat --formulas printed \
          --texel-budget 64 --max-anisotropy 8 --max-stretch 2 --samples 2 --lines 8 --far-field off --far-field-mib 1 --lighting lit --cull \
          --msaa 1 --tile 8 --albedo map.png --height map.png --normal map.png --height-sense white-deep --relief-depth 0.1 \
-         --normal-y down --wrap mirror --allow-outside --base-color 0.5 --metallic 0.5 --roughness 0.3 --emissive 0.1,0.2,0.3 --region 0,1,7,6 \
+         --normal-y down --wrap mirror --allow-outside --base-color 0.5 --metallic 0.5 --roughness 0.3 --emissive 0.1,0.2,0.3 --cut-out off --region 0,1,7,6 \
          --max-image-side 64 --max-image-mib 64 --max-triangles 9 --max-textures 9 --crease-angle 30 --eye -1,-1,3 --target -0.1,0,0 --up 0,1,-0.1 --fov 40 --near 0.1 \
          --sun -1,1,1 --sun 1,1,1,0.5,0.5,0.5,2 --point-light -1,0,2 --environment map.png --environment-turn -30 --exposure 0.5 --tone neutral --background skyblue --threads 1 \
          --quiet --repeat 2 --stats stats.json --save-scene kept.toml --json",

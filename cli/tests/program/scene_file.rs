@@ -36,6 +36,7 @@ fn saved_scene_draws_the_same_picture() {
         "-q --size 40x30 --far-field off",
         "-q --size 40x30 --eye 3,2,4 --fov 33.3 --near 0.1 --filter ewa --lighting lit --background skyblue --msaa 4",
         "model/two.obj -q --size 40x30 --albedo model/map.png --height model/map.png --relief-depth 0.07 --wrap mirror",
+        "-q --size 40x30 --eye 3,2,4 --orthographic 2.5 --near 0.1 --filter horizon",
         "model/two.obj -q --size 40x30 --sun -1,2,3 --sun 1,0,0.5,0.1,0.2,0.3 --point-light 0,0,1 --crease-angle 20.5 --roughness 0.5",
         "model/two.obj -q --size 40x30 --base-color 0.1,0.9,0.3 --region 3,5,20,11 --cull --eye 0,4,0.001 --samples 3 -f truth",
     ]

@@ -200,7 +200,9 @@ impl<'a> Patches<'a> {
         let num_rows = extent.q[1] * (1.0 + frame.growth.max(0.0)) + depth - extent.q[0];
         let step = extent.half_height * (2.0 / self.num_bins);
         let is_wasteful = num_rows * (extent.xi[1] - extent.xi[0]) > extent.area;
-        if picks.len() > 1 && (is_wasteful || extent.q[1] - extent.q[0] > step * MOST_BINS) {
+        let is_long = extent.q[1] - extent.q[0] > step * MOST_BINS;
+        let is_torn = !frame.goes_one_way(extent.xi, extent.q);
+        if picks.len() > 1 && (is_wasteful || is_long || is_torn) {
             return None;
         }
         // Set the lines so close that sixteen lie within two loads where they are farthest apart.

@@ -248,6 +248,14 @@ impl<'a> SweepFrame<'a> {
         lines.into_iter().fold(self.depth, |most, xi| most.max(self.depth + self.tilt * xi))
     }
 
+    /// Whether the rays of seen places between two lines and two rows go down the way that the sweep
+    /// walks. Around a place that faces the eye they go apart to all sides, and what is walked the other
+    /// way is seen beyond its own row.
+    pub(super) fn goes_one_way(&self, lines: [f32; 2], rows: [f32; 2]) -> bool {
+        let least = |growth: f32, [a, b]: [f32; 2]| (growth * a).min(growth * b);
+        self.depth + least(self.growth, rows) + least(self.tilt, lines) >= -FLAT
+    }
+
     /// How much farther apart than in the middle lines are at row `q`.
     fn scale_at(&self, q: f32) -> f32 {
         1.0 + self.spread * q

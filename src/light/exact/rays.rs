@@ -104,11 +104,11 @@ impl ExactLight<'_> {
 impl<'a> Ground<'a> {
     pub(super) fn new(exact: ExactLight<'a>, hit: &Hit<'a>) -> Self {
         let SurfacePoint { position, normal, tangents } = hit.point;
-        let eye = exact.scene.camera.eye;
+        let (camera, eye) = (&exact.scene.camera, exact.scene.camera.viewpoint());
         let [u, v, n] = hit.point.axes(eye).map(|axis| axis.as_dvec3());
         let local = hit.spot.normal.as_dvec3();
         let position = position.as_dvec3();
-        let far = position.abs().max_element() + (position - eye.as_dvec3()).length();
+        let far = position.abs().max_element() + (position - camera.eye.as_dvec3()).length();
         let mut ground = Self {
             exact,
             position,
@@ -139,7 +139,7 @@ impl<'a> Ground<'a> {
             // Twice the depth, since a neighbour that turns towards the light rises a little.
             ground.reach += 2.0 * down * repeat;
         }
-        ground.to_eye = above((eye.as_dvec3() - ground.position).normalize_or(n), ground.normal);
+        ground.to_eye = above(eye.seen_from_exact(ground.position).normalize_or(n), ground.normal);
         ground
     }
 

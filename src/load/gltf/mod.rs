@@ -65,8 +65,11 @@ fn model(mut document: Document, options: &LoadOptions) -> Result<Model> {
     let placed = document.place().map_err(refuse)?;
     name_unmoved(&mut document, &placed);
     let mut pieces = pieces(&mut document, &placed, &materials, options)?;
+    let given = Given::new(options)?;
     let is_none = |material: &GltfMaterial| {
-        material.albedo.is_none() && material.cut.is_some_and(|[opacity, cut]| opacity < cut)
+        let is_cut = given.of(&material.plain.name).cut_out != Some(false);
+        let is_thin = material.cut.is_some_and(|[opacity, cut]| opacity < cut);
+        material.albedo.is_none() && is_cut && is_thin
     };
     let num = pieces.len();
     pieces.retain(|piece| !is_none(&materials[piece.mesh.material]));
@@ -76,8 +79,7 @@ fn model(mut document: Document, options: &LoadOptions) -> Result<Model> {
     if pieces.is_empty() {
         return Err(Error::file(&path, "has no triangles"));
     }
-    let mut planner =
-        Planner { document, images: Images::default(), given: Given::new(options)?, options };
+    let mut planner = Planner { document, images: Images::default(), given, options };
     let choices = given::choices(options);
     let plans = planner.plans(&materials, &pieces)?;
     let Planner { document, images, .. } = planner;
@@ -213,13 +215,15 @@ impl Planner<'_> {
         let height = pictures.height(&given, material)?;
         let mut maps = [albedo, height, None];
         let mut numbers = Numbers::default();
-        let opacity = maps[0].as_ref().zip(material.cut);
+        let cut = material.cut.filter(|_| given.cut_out != Some(false));
+        let opacity = maps[0].as_ref().zip(cut);
         let opacity = opacity.map(|(albedo, [factor, threshold])| Map {
             path: albedo.path.clone(),
             kind: Kind::Opacity {
                 channel: Some(Channel::Matte),
                 range: [0.0, factor].map(f32::to_bits),
                 threshold: threshold.to_bits(),
+                may_be_unused: false,
             },
         });
         if pictures.planner.options.keep_normals {

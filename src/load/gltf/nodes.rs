@@ -3,7 +3,7 @@
 use super::document::{Document, Reasoned};
 use crate::scene::{Camera, Light};
 use glam::{DAffine3, DMat4, DQuat, DVec3, Vec3};
-use gltf::json::camera::Perspective;
+use gltf::json::camera::{Orthographic, Perspective};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as PunctualLight, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Mesh, Node};
@@ -93,9 +93,15 @@ impl Document {
     ) -> Reasoned<Option<Camera>> {
         let camera =
             self.root.get(index).ok_or_else(|| format!("camera {index} does not exist"))?;
-        let found = camera.perspective.as_ref().and_then(|lens| perspective(lens, to_world));
+        let found = match (&camera.perspective, &camera.orthographic) {
+            (Some(lens), _) => Some(perspective(lens)),
+            (None, Some(lens)) => Some(orthographic(lens)),
+            (None, None) => None,
+        };
+        let placed = found.map(|camera| placed(camera, to_world));
+        let found = placed.filter(|camera| camera.validate().is_ok());
         if found.is_none() {
-            self.warn(format_args!("camera {index} is not a valid perspective; not used"));
+            self.warn(format_args!("camera {index} is not valid; not used"));
         }
         Ok(found)
     }
@@ -147,20 +153,24 @@ fn local(node: &Node) -> Result<DAffine3, &'static str> {
     Ok(DAffine3::from_scale_rotation_translation(scale, rotation.normalize(), translation))
 }
 
+fn perspective(lens: &Perspective) -> Camera {
+    Camera { fov_degrees: lens.yfov.to_degrees(), near: lens.znear, ..Camera::default() }
+}
+
+/// Its width is the frame's, in square pixels, as that of a perspective is.
+fn orthographic(lens: &Orthographic) -> Camera {
+    // What is nearest may be at the eye itself.
+    let near = lens.znear.max(lens.zfar * 1e-6);
+    // Where a direction is mirrored, its magnification is below 0.
+    Camera { orthographic: Some(2.0 * lens.ymag.abs()), near, ..Camera::default() }
+}
+
 /// A camera that looks along -z of its node, with y up.
-fn perspective(lens: &Perspective, to_world: &DAffine3) -> Option<Camera> {
+fn placed(camera: Camera, to_world: &DAffine3) -> Camera {
     let [eye, forward] = [to_world.translation.as_vec3(), -unit(to_world.matrix3.z_axis)];
     // As far from the eye as that from the origin: nearer, rounding would turn the view.
     let target = eye + forward * eye.abs().max_element().max(1.0);
-    let camera = Camera {
-        eye,
-        target,
-        up: unit(to_world.matrix3.y_axis),
-        fov_degrees: lens.yfov.to_degrees(),
-        near: lens.znear,
-        ..Camera::default()
-    };
-    camera.validate().is_ok().then_some(camera)
+    Camera { eye, target, up: unit(to_world.matrix3.y_axis), ..camera }
 }
 
 fn unit(axis: DVec3) -> Vec3 {
