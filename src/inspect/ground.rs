@@ -4,7 +4,9 @@ use super::ray::Ray;
 use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::geometry::{self, Geometry};
 use crate::light::SurfacePoint;
-use crate::raster::{AttributePlanes, Drawn, Follow, QuadPair, Rasterizer, TileGrid};
+use crate::raster::{
+    AttributePlanes, CenterTile, Centers, Drawn, Follow, QuadPair, Rasterizer, TileGrid,
+};
 use crate::relief::{HeightField, bent, displacement, finite, march};
 use crate::render::{Outlines, Passages, PreparedScene, surface_point};
 use crate::scene::Scene;
@@ -29,7 +31,7 @@ pub(super) struct Ground {
 pub(super) struct Quads<'a> {
     uv: [PixelLanes; 2],
     view: [PixelLanes; 3],
-    bend: Option<[PixelLanes; 2]>,
+    bend: Option<[[PixelLanes; 2]; 3]>,
     field: Option<&'a HeightField>,
 }
 
@@ -96,7 +98,7 @@ impl Ground {
 fn seen(geometry: &Geometry, drawn: Drawn, [x, y]: [u32; 2]) -> Option<[u32; 2]> {
     let bands = TileGrid::new(drawn.settings).num_tiles[1] as usize;
     let mut found = vec![None; bands];
-    Rasterizer::default().see_centers(geometry, (drawn, false), &mut found, &|tile, found| {
+    let see = |tile: &CenterTile, found: &mut Option<[u32; 2]>| {
         for row in tile.rows().filter(|row| row.y == y as i32) {
             let lane = (x as i32 - row.x) as usize;
             if lane < 8 && row.seen >> lane & 1 == 1 {
@@ -105,7 +107,9 @@ fn seen(geometry: &Geometry, drawn: Drawn, [x, y]: [u32; 2]) -> Option<[u32; 2]>
                 *found = Some(names[lane]);
             }
         }
-    });
+    };
+    let centers = Centers { drawn, has_quads: false, see: &see };
+    Rasterizer::default().see_centers(geometry, centers, &mut found);
     found.into_iter().flatten().next()
 }
 
@@ -133,8 +137,7 @@ impl<'a> Quads<'a> {
         let relief_depth = self.field.map_or(0.0, |field| field.relief_depth);
         let mut displacement = displacement(&self.view, relief_depth);
         if let Some(bend) = self.bend {
-            let farther = bent(&displacement, &self.view, &bend, relief_depth);
-            displacement = displacement.map(|d| d * farther);
+            displacement = bent(&displacement, &self.view, &bend, relief_depth);
         }
         let depth = self.field.map_or(PixelLanes::ZERO, |field| march(field, &uv, &displacement));
         let hit = [0, 1].map(|i| uv[i] + displacement[i] * depth);

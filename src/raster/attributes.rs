@@ -114,7 +114,9 @@ impl<'a> PlaneMaker<'a> {
             let view = [0, 1, 2].map(|axis| basis.plane(views.map(|view| view[axis])));
             let planes =
                 planes.iter_mut().enumerate().filter(|(lane, _)| self.needs_view(&corners[*lane]));
-            let bend = bends(&normals, &tangents, &tex_coords, &views);
+            // The ray to a place that is a repeat farther is longer by that; parallel ones are not.
+            let longer = if self.projection.is_orthographic() { 0.0 } else { 1.0 };
+            let bend = bends((&normals, &tangents), &tex_coords, (&views, longer));
             planes.for_each(|(lane, planes)| {
                 planes.view = [0, 1, 2].map(|i| one(&view[i], lane));
                 if self.has_outlines {
@@ -228,13 +230,13 @@ fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vect
     std::array::from_fn(|i| is_frame.select(solved[i], straight[i]))
 }
 
-/// [`AttributePlanes::bend`] of eight triangles; 0 where the normals at the corners are equal, or the
+/// [`AttributePlanes::bend`] of eight triangles, of rays that are so many repeats longer for each that
+/// they go farther; 0 where the normals at the corners are equal, or the
 /// texture has no area.
 fn bends(
-    normals: &[Vectors; 3],
-    tangents: &[[Vectors; 3]; 2],
+    (normals, tangents): (&[Vectors; 3], &[[Vectors; 3]; 2]),
     tex_coords: &[Vectors; 3],
-    views: &[Vectors; 3],
+    (views, longer): (&[Vectors; 3], f64),
 ) -> [[f64x8; 2]; 3] {
     let edge = |i: usize| [0, 1].map(|axis| tex_coords[i][axis] - tex_coords[0][axis]);
     let ([u1, v1], [u2, v2]) = (edge(1), edge(2));
@@ -259,8 +261,7 @@ fn bends(
     let down = (views[0][2] + views[1][2] + views[2][2]) * (1.0 / 3.0);
     let turn = |of: [f64x8; 2], axis: usize| {
         [0, 1].map(|i| {
-            // A ray to a place that is a repeat farther is longer by that.
-            let own = if i == axis { 1.0 } else { 0.0 };
+            let own = if i == axis { longer } else { 0.0 };
             (of[i] - own + down * lost[axis][i]) * 0.5
         })
     };
