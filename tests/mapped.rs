@@ -66,8 +66,11 @@ fn even_textures_are_plain_numbers() {
     for filter in [TRUTH, Filter::default(), trilinear] {
         for [plain, mapped] in [[&plain, &mapped], [&with_point[0], &with_point[1]]] {
             let found = decibels(&draw(plain, filter), &draw(mapped, filter), 1500.0);
-            // Colours are packed in fifteen bits, with (1 - metal) or without.
-            assert!(found > 75.0, "{filter:?}: {found} dB");
+            // Colours are packed in fifteen bits, with (1 - metal) or without; what the horizon's
+            // highlights know of a texture of roughness, in the lengths of packed normals, which are
+            // shorter between texels that lie differently.
+            let least = if matches!(filter, Filter::Horizon(_)) { 48.0 } else { 75.0 };
+            assert!(found > least, "{filter:?}: {found} dB");
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::geometry::{self, Projection};
 use crate::light::SurfacePoint;
 use crate::light::exact::{ExactLight, Hit};
 use crate::raster::{Drawn, Follow, Pool, QuadBlock, QuadPair, Rasterizer};
+use crate::relief::{finite, stretch};
 use crate::render::{Outlines, Passages, PreparedScene, Shader, pixel_center, surface_point};
 use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
@@ -322,11 +323,7 @@ impl Probe<'_> {
         let ([x, y], planes) = (pair.centers(), pair.planes[lane / 4]);
         let [a, b, c] = planes.nearness;
         let polygon = self.projection.distance(x * a + y * b + PixelLanes::splat(c));
-        // Along its view it sinks by gamma repeats.
-        let [.., gamma] = pair.view();
-        let lengths =
-            PixelLanes::splat(sunk) / gamma.abs().max(PixelLanes::splat(f32::MIN_POSITIVE));
-        self.projection.behind(polygon, lengths).as_array()[lane]
+        self.projection.behind(polygon, finite(stretch(&pair.view(), sunk))).as_array()[lane]
     }
 }
 
