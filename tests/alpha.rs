@@ -164,7 +164,7 @@ fn holes_of_a_relief_are_where_rays_hit_it() {
     let height = HeightImage::from_fn(8, 8, |_, _| 0.0);
     let maps = SurfaceMaps { height: Some(height), relief_depth: 0.2, ..Default::default() };
     let relief = Surface::new(maps).expect("a surface").into();
-    let stripes = |x: u32, _: u32| if x / 10 % 2 == 0 { 1.0 } else { 0.0 };
+    let stripes = |x: u32, _: u32| if (x / 10).is_multiple_of(2) { 1.0 } else { 0.0 };
     let camera = Camera { eye: Vec3::new(1.6, 0.0, 1.5), ..front(1.0) };
     let drawn = |material: Material, middle: Vec3, silhouette: bool| {
         let meshes = vec![square(0, middle, [Vec3::X, Vec3::Y], 1.0)];

@@ -152,10 +152,7 @@ fn cases() -> Vec<Case> {
     cases.push(("far field".into(), Wrap::Repeat, 200, far));
     cases.push(("far field, mirror".into(), Wrap::Mirror, 130, small(Filter::Horizon(horizon))));
     cases.extend(baked_cases());
-    for (name, filter) in [("Horizon", Filter::Horizon(horizon)), ("Ewa", Filter::Ewa(ewa))] {
-        let settings = Settings { lighting: Lighting::Lit, ..small(filter) };
-        cases.push((format!("{PARALLEL}, {name}"), Wrap::Repeat, 64, settings));
-    }
+    cases.extend([Filter::Horizon(horizon), Filter::Ewa(ewa)].map(parallel_case));
     // Texels a side that are no power of two wrap by a division.
     for (name, filter) in [("Trilinear", trilinear), ("Ewa", Filter::Ewa(ewa)), ("One ray", ray)] {
         cases.push((format!("{name}, 50 texels"), Wrap::Repeat, 50, small(filter)));
@@ -168,6 +165,12 @@ const BAKED: &str = "baked";
 
 /// How cases begin that are seen by parallel rays.
 const PARALLEL: &str = "orthographic";
+
+fn parallel_case(filter: Filter) -> Case {
+    let name = if matches!(filter, Filter::Ewa(_)) { "Ewa" } else { "Horizon" };
+    let settings = Settings { lighting: Lighting::Lit, ..small(filter) };
+    (format!("{PARALLEL}, {name}"), Wrap::Repeat, 64, settings)
+}
 
 /// What a case shows.
 fn scene_of(&(ref name, wrap, size, _): &Case) -> Scene {

@@ -52,7 +52,7 @@ pub trait Lanes:
     fn at_most(self, bound: f32) -> Self;
 }
 
-macro_rules! lanes {
+macro_rules! numbers_in {
     ($lanes:ty) => {
         impl Lanes for $lanes {
             #[inline(always)]
@@ -78,8 +78,8 @@ macro_rules! lanes {
     };
 }
 
-lanes!(f32x8);
-lanes!(f32x16);
+numbers_in!(f32x8);
+numbers_in!(f32x16);
 
 /// The sum of the lanes, in one fixed order on every machine.
 pub fn sum(lanes: f32x8) -> f32 {
