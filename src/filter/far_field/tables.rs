@@ -24,6 +24,10 @@ const MOST_TABLES: usize = 400;
 /// 1.8 dB better than in proportion to the length; other scenes are best with 0.5 to 1.
 const AZIMUTH_POWER: f32 = 0.7;
 
+/// The same of highlights, which change with the azimuth at gentle views as much as at grazing ones:
+/// eight azimuths there show as edges in a picture.
+const AZIMUTH_POWER_OF_GLOSS: f32 = 0.3;
+
 /// The slope from which azimuths grow no more: at the skyline a footprint is so long that it holds
 /// what a finer direction would tell apart.
 const STEEPEST: f32 = 20.0;
@@ -82,10 +86,11 @@ impl FarField {
             return None;
         }
         let lengths = Lengths::new(surface);
+        let power = if gloss.is_some() { AZIMUTH_POWER_OF_GLOSS } else { AZIMUTH_POWER };
         let mut far = Self {
             first_level,
             lengths,
-            starts: table_starts(surface, first_level, mib),
+            starts: table_starts(surface, first_level, (mib, power)),
             plane: grazing_depth(surface, first_level, &lengths),
             source: 0,
             gloss,
@@ -187,7 +192,7 @@ fn grazing_depth(surface: &Surface, first_level: usize, lengths: &Lengths) -> f3
 /// Where each length's tables begin: as many azimuths as the memory allows, in proportion to a power
 /// of the length, since an error in azimuth moves what lies above or below the tables' plane across
 /// the view by as much as it is long.
-fn table_starts(surface: &Surface, first_level: usize, mib: u32) -> Vec<usize> {
+fn table_starts(surface: &Surface, first_level: usize, (mib, power): (u32, f32)) -> Vec<usize> {
     let words: usize =
         surface.levels()[first_level..].iter().map(|level| FarImage::num_words(level.size())).sum();
     let num = (mib as usize * (1 << 20) / (words * 4)).min(MOST_TABLES);
@@ -196,7 +201,7 @@ fn table_starts(surface: &Surface, first_level: usize, mib: u32) -> Vec<usize> {
     let azimuths = |scale: f32| {
         let ratio = |length: usize| {
             let log = growth * (length as f32 / (NUM_LENGTHS - 1) as f32);
-            pseudo_exp(AZIMUTH_POWER * log.min(most))
+            pseudo_exp(power * log.min(most))
         };
         // By fours, so that tables lie along both axes.
         let wanted = |length: usize| (ratio(length) * scale) as usize / 4 * 4;
