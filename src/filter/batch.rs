@@ -18,8 +18,8 @@ pub struct Batch<'a> {
     /// Of a surface that bends, how much the displacements of each vector's pixels grow with the depth
     /// ([`bow`](crate::relief::bow)); else empty. Filters that take rays for straight do not ask.
     pub bows: &'a [[PixelLanes; 2]],
-    /// Of a surface that shows highlights, the unit direction to the eye at
-    /// each covered pixel, in the frame of the texture and in order; else empty.
+    /// Of a surface that shows highlights, the unit direction to the eye at each covered pixel, in the
+    /// frame of the texture and in order; else empty.
     pub to_eyes: &'a [Vec3],
     /// Whether the horizon sweeps each pixel by itself, and cuts its kernel finely enough for its
     /// weights to be exact to 1e-4. Pictures need not that, and are drawn many times as fast without.

@@ -100,7 +100,7 @@ impl Footprints {
 
     /// The pixels, before their hits, over a surface that is curved: see [`bent`] for `bend`.
     pub fn bent(self, view: &[PixelLanes; 3], bend: &[Uv; 3], field: &HeightField) -> Self {
-        let displacement = bent(&self.displacement, view, bend, field.relief_depth);
+        let displacement = bent(view, bend, field.relief_depth);
         Self { displacement, ..self }
     }
 

@@ -7,7 +7,7 @@ use crate::light::SurfacePoint;
 use crate::raster::{
     AttributePlanes, CenterTile, Centers, Drawn, Follow, QuadPair, Rasterizer, TileGrid,
 };
-use crate::relief::{HeightField, bent, displacement, finite, march};
+use crate::relief::{HeightField, displacement_over, finite, march};
 use crate::render::{Outlines, Passages, PreparedScene, surface_point};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Region, Settings};
@@ -135,10 +135,7 @@ impl<'a> Quads<'a> {
     pub(super) fn pixels(self) -> [QuadPixel<'a>; 8] {
         let uv = self.uv.map(finite);
         let relief_depth = self.field.map_or(0.0, |field| field.relief_depth);
-        let mut displacement = displacement(&self.view, relief_depth);
-        if let Some(bend) = self.bend {
-            displacement = bent(&displacement, &self.view, &bend, relief_depth);
-        }
+        let displacement = displacement_over(&self.view, self.bend.as_ref(), relief_depth);
         let depth = self.field.map_or(PixelLanes::ZERO, |field| march(field, &uv, &displacement));
         let hit = [0, 1].map(|i| uv[i] + displacement[i] * depth);
         std::array::from_fn(|lane| {

@@ -6,7 +6,7 @@ use super::values::{Band, ValuesMut};
 use crate::geometry::Projection;
 use crate::light::unit_axes;
 use crate::raster::{CenterTile, LitLanes, QuadBlock, QuadPair};
-use crate::relief::{HeightField, ViewRays, bent, displacement, finite, march_all, stretch};
+use crate::relief::{HeightField, ViewRays, displacement_over, finite, march_all, stretch};
 use crate::render::{Outlines, PreparedScene};
 use crate::scene::{Material, Scene};
 use crate::shell::Met;
@@ -152,11 +152,8 @@ fn trace(
     (field, projection): (&HeightField, &Projection),
     hits: &mut [PairHits],
 ) {
-    let along = |pair: QuadPair| {
-        let (view, depth) = (pair.view(), field.relief_depth);
-        let straight = displacement(&view, depth);
-        pair.bend().map_or(straight, |bend| bent(&straight, &view, &bend, depth))
-    };
+    let along =
+        |pair: QuadPair| displacement_over(&pair.view(), pair.bend().as_ref(), field.relief_depth);
     let along: Vec<_> = block.pairs().map(along).collect();
     let rays = hits.iter().zip(&along).zip(block.pairs()).map(|((hits, along), pair)| ViewRays {
         base: hits.uv,

@@ -54,7 +54,7 @@ pub struct Beam {
 
 impl TextureFrame {
     /// A direction as the axes see it, u and v of unit length: what normals are held against.
-    fn local(&self, direction: Vec3) -> Vec3 {
+    pub(super) fn local(&self, direction: Vec3) -> Vec3 {
         Vec3::from(unit_axes(self.tangents, self.normal).map(|axis| axis.dot(direction)))
     }
 

@@ -7,7 +7,6 @@
 
 use super::bake::TextureFrame;
 use super::reflection::{LEAST_COSINE, alpha};
-use super::surface_point::unit_axes;
 use crate::simd::Lanes;
 use glam::Vec3;
 
@@ -19,7 +18,7 @@ const LEAST_HALF: f32 = 1e-12;
 #[derive(Clone, Copy, Debug)]
 pub struct Gloss {
     /// Unit direction to the sun.
-    pub to_light: Vec3,
+    to_light: Vec3,
     /// `a^2` of the roughness; `None` where texels have their own, in the [length](rough_length) of
     /// their normals.
     alpha_squared: Option<f32>,
@@ -38,13 +37,11 @@ impl Gloss {
         roughness: Option<f32>,
         relief_depth: f32,
     ) -> Self {
-        let axes = unit_axes(frame.tangents, frame.normal);
-        let local = |w: Vec3| Vec3::from(axes.map(|axis| axis.dot(w)));
         let [u, v] = frame.tangents;
         Self {
-            to_light: local(to_sun.normalize_or_zero()),
+            to_light: frame.local(to_sun.normalize_or_zero()),
             alpha_squared: roughness.map(|roughness| alpha(roughness) * alpha(roughness)),
-            along: [u, v].map(local),
+            along: [u, v].map(|along| frame.local(along)),
             down: u.cross(v).length().sqrt(),
             relief_depth,
         }

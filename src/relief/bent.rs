@@ -1,6 +1,6 @@
 //! View rays over a surface that bends: as filters see them, straight or bowed over the texture.
 
-use super::displacement::stretch;
+use super::displacement::{displacement, stretch};
 use crate::simd::PixelLanes;
 
 /// Depth, 0 to 1, for which bent rays are right: about as deep as relief is seen at an outline. A torus
@@ -26,22 +26,32 @@ const BOW_DEPTHS: [f32; 2] = [0.3, 0.9];
 ///
 /// A displacement is linear in the depth, and so can be right at one: [`SEEN_DEPTH`].
 pub fn bent(
-    straight: &[PixelLanes; 2],
     view: &[PixelLanes; 3],
     bend: &[[PixelLanes; 2]; 3],
     relief_depth: f32,
 ) -> [PixelLanes; 2] {
-    bent_for(SEEN_DEPTH, straight, view, bend, relief_depth)
+    bent_for(SEEN_DEPTH, view, bend, relief_depth)
+}
+
+/// The displacement, [`bent`] where the surface bends.
+pub fn displacement_over(
+    view: &[PixelLanes; 3],
+    bend: Option<&[[PixelLanes; 2]; 3]>,
+    relief_depth: f32,
+) -> [PixelLanes; 2] {
+    match bend {
+        Some(bend) => bent(view, bend, relief_depth),
+        None => displacement(view, relief_depth),
+    }
 }
 
 /// How much a [`bent`] displacement grows with the depth for which it is right: over all of it.
 pub fn bow(
-    straight: &[PixelLanes; 2],
     view: &[PixelLanes; 3],
     bend: &[[PixelLanes; 2]; 3],
     relief_depth: f32,
 ) -> [PixelLanes; 2] {
-    let [near, far] = BOW_DEPTHS.map(|depth| bent_for(depth, straight, view, bend, relief_depth));
+    let [near, far] = BOW_DEPTHS.map(|depth| bent_for(depth, view, bend, relief_depth));
     let inverse = 1.0 / (BOW_DEPTHS[1] - BOW_DEPTHS[0]);
     [0, 1].map(|i| (far[i] - near[i]) * inverse)
 }
@@ -49,12 +59,12 @@ pub fn bow(
 /// The displacement that is right for a depth, 0 to 1.
 fn bent_for(
     depth: f32,
-    straight: &[PixelLanes; 2],
     view: &[PixelLanes; 3],
     [gamma, along_u, along_v]: &[[PixelLanes; 2]; 3],
     relief_depth: f32,
 ) -> [PixelLanes; 2] {
     let [alpha, beta, _] = *view;
+    let straight = displacement(view, relief_depth);
     let length = stretch(view, relief_depth);
     // The share of gamma^2 that the bend takes or gives. Rays that pass above it bend the most.
     let grown = (gamma[0] * alpha + gamma[1] * beta) * length * length;
@@ -76,7 +86,6 @@ fn bent_for(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::relief::displacement;
 
     /// Rays that come down on a cylinder whose axis is along v, and how far they move around it.
     #[test]
@@ -97,8 +106,8 @@ mod tests {
             let none = PixelLanes::ZERO;
             let bend = [[grown[0], none], [grown[1], none], [none; 2]];
             let straight = displacement(&view, relief_depth);
-            let found = bent(&straight, &view, &bend, relief_depth)[0].to_array()[0];
-            let bow = bow(&straight, &view, &bend, relief_depth)[0].to_array()[0];
+            let found = bent(&view, &bend, relief_depth)[0].to_array()[0];
+            let bow = bow(&view, &bend, relief_depth)[0].to_array()[0];
             let straight = f64::from(straight[0].to_array()[0]);
             for depth in [0.2, 0.55, 0.9] {
                 let exact = around(depth * f64::from(relief_depth)) / depth;
@@ -113,7 +122,7 @@ mod tests {
     fn flat_surfaces_leave_rays_straight() {
         let view = [0.3, -0.7, 0.2].map(PixelLanes::splat);
         let (straight, bend) = (displacement(&view, 0.05), [[PixelLanes::ZERO; 2]; 3]);
-        assert_eq!(bent(&straight, &view, &bend, 0.05), straight);
-        assert_eq!(bow(&straight, &view, &bend, 0.05), [PixelLanes::ZERO; 2]);
+        assert_eq!(bent(&view, &bend, 0.05), straight);
+        assert_eq!(bow(&view, &bend, 0.05), [PixelLanes::ZERO; 2]);
     }
 }

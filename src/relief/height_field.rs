@@ -6,6 +6,7 @@
 use super::maxima::Maxima;
 use crate::simd::{RayLanes, i32x16};
 use crate::texture::{FULL_F32, Rows, Surface, Wrap};
+use std::sync::OnceLock;
 
 /// Heights of a surface's base level, read where the surface has them, with maxima.
 #[derive(Clone, Debug)]
@@ -22,8 +23,9 @@ pub struct HeightField {
     pub is_clamped: bool,
     base: Rows,
     maxima: Maxima,
-    /// Depths that no relief reaches, of nodes of blocks.
-    deepest: Maxima,
+    /// Depths that no relief reaches, of nodes of blocks; made when they are first asked for, which
+    /// only outlines do.
+    deepest: OnceLock<Maxima>,
 }
 
 /// Cells a side of a block: those of the pyramid of depths, which is asked around places only.
@@ -42,23 +44,30 @@ impl HeightField {
             is_clamped: surface.wrap() == Wrap::Clamp,
             base: base.rows(false).clone(),
             maxima: Maxima::new([1, 1], |_, _| 0),
-            deepest: Maxima::new([1, 1], |_, _| 0),
+            deepest: OnceLock::new(),
         };
         let greatest = |x: usize, y: usize| {
             field.corners(x as i32, y as i32).into_iter().fold(0.0, f32::max) as u16
         };
         field.maxima = Maxima::new([w, h], greatest);
-        // The corners of these cells are all texels of a block, and those beyond it.
-        let cells =
-            |block: usize, end: usize| [0, 2, 3].map(|i| (block * BLOCK + i).min(end - 1) as i32);
-        let deepest = |x: usize, y: usize| {
-            let (columns, rows) = (cells(x, w), cells(y, h));
-            let all = rows.into_iter().flat_map(|y| columns.map(|x| field.corners(x, y)));
-            let least = all.flatten().fold(FULL_F32, f32::min);
-            (FULL_F32 - least) as u16
-        };
-        field.deepest = Maxima::new([w.div_ceil(BLOCK), h.div_ceil(BLOCK)], deepest);
         field
+    }
+
+    /// See the field of that name.
+    fn deepest(&self) -> &Maxima {
+        self.deepest.get_or_init(|| {
+            // The corners of these cells are all texels of a block, and those beyond it.
+            let cells = |block: usize, axis: usize| {
+                [0, 2, 3].map(|i| ((block * BLOCK + i) as i32).min(self.size[axis] - 1))
+            };
+            let deepest = |x: usize, y: usize| {
+                let (columns, rows) = (cells(x, 0), cells(y, 1));
+                let all = rows.into_iter().flat_map(|y| columns.map(|x| self.corners(x, y)));
+                let least = all.flatten().fold(FULL_F32, f32::min);
+                (FULL_F32 - least) as u16
+            };
+            Maxima::new(self.size.map(|side| (side as usize).div_ceil(BLOCK)), deepest)
+        })
     }
 
     /// Whether all relief that is no farther from a place than so many repeats lies above a depth. It
@@ -69,7 +78,8 @@ impl HeightField {
         // Nodes no smaller than the steps between the places that are looked at: none is left out.
         let step = 0.5 * reach[0].max(reach[1]);
         let size = |level: i32| (BLOCK << level) as f64;
-        let Some(level) = (0..self.deepest.num_levels()).find(|level| size(*level) >= step) else {
+        let deepest = self.deepest();
+        let Some(level) = (0..deepest.num_levels()).find(|level| size(*level) >= step) else {
             return false;
         };
         let nodes = |i: usize| {
@@ -79,7 +89,7 @@ impl HeightField {
             })
         };
         let (columns, rows) = (nodes(0), nodes(1));
-        let is_above = |node: [i32; 2]| f64::from(self.deepest.above_one(level, node)) <= depth;
+        let is_above = |node: [i32; 2]| f64::from(deepest.above_one(level, node)) <= depth;
         rows.into_iter().all(|y| columns.into_iter().all(|x| is_above([x, y])))
     }
 

@@ -1,7 +1,7 @@
 //! How view rays bow over curved meshes.
 
 use crate::raster::QuadBlock;
-use crate::relief::{HeightField, bow, displacement};
+use crate::relief::{HeightField, bow};
 use crate::simd::PixelLanes;
 use std::ops::Range;
 
@@ -14,8 +14,7 @@ pub(super) fn find_bows(
     let of_pair = |index: usize| {
         let pair = block.pair(index);
         let (view, bend) = (pair.view(), pair.bend()?);
-        let straight = displacement(&view, field.relief_depth);
-        Some(bow(&straight, &view, &bend, field.relief_depth))
+        Some(bow(&view, &bend, field.relief_depth))
     };
     if pairs.clone().any(|index| block.pair(index).bend().is_some()) {
         bows.extend(pairs.map(|index| of_pair(index).unwrap_or_default()));

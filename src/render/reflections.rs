@@ -110,9 +110,9 @@ impl Shader<'_> {
         let to_eyes: Vec<_> = lights.iter().map(|lights| lights.to_eye).collect();
         let mut sums = vec![Vec3::ZERO; lights.len()];
         let mut found = vec![Filtered::default(); pairs.len()];
+        // All have the same relief.
+        self.footprints((ground.unlit, &filter.traits().rule), (block, pairs), footprints);
         for (light, gloss) in gloss {
-            let rule = &filter.traits().rule;
-            self.footprints((gloss, rule), (block, pairs.clone()), footprints);
             let batch = Batch { pixels: footprints, to_eyes: &to_eyes, ..Batch::default() };
             self.count(filter.colors(gloss, &batch, scratch, &mut found));
             let scale = gloss.surface().color_scale() / FULL_F32;

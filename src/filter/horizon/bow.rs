@@ -3,18 +3,15 @@
 //! A texel at depth `d` is seen over the place from which a ray has moved by `d D + d (d - s) B` when it
 //! gets there, with the bow `B` ([`bow`](crate::relief::bow)) and the depth `s` for which `D` is right.
 
-use super::sweep_frame::SweepFrame;
-use crate::simd::{PixelLanes, sum};
+use super::sweep_frame::{SweepFrame, total};
+use crate::simd::PixelLanes;
 
 /// Most that a displacement may bow, forth and back, as shares of it.
 const MOST_BOW: [f32; 2] = [0.6, 1.5];
 
 /// The mean over the picked lanes of bows.
 pub(super) fn mean_bow(bows: &[[PixelLanes; 2]], picked: &[PixelLanes], num: usize) -> [f32; 2] {
-    let sum_of = |axis: usize| {
-        bows.iter().zip(picked).fold(PixelLanes::ZERO, |all, (bow, of)| all + (bow[axis] & *of))
-    };
-    [0, 1].map(|axis| sum(sum_of(axis)) / num as f32)
+    [0, 1].map(|axis| total(bows, picked, |bow| bow[axis]) / num as f32)
 }
 
 impl SweepFrame<'_> {

@@ -219,19 +219,13 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         i: usize,
     ) -> Texels<CHANNELS> {
         let between = self.between(steps, i);
-        let [near, far] = &steps.starts;
         let place = steps.places[i];
         if let (true, Shown::Gloss(gloss)) = (LIT, self.grid.shown) {
             let mut values = [LineLanes::ZERO; CHANNELS];
             values[..3].copy_from_slice(&self.highlights(gloss, steps, i, &between));
             return Texels { values, place };
         }
-        let (mut values, mut height) = self.values(near[i], &between);
-        if HALVES && near[i] != far[i] {
-            let (others, far_height) = self.values::<CHANNELS>(far[i], &between);
-            (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
-            height = (height + far_height) * 0.5;
-        }
+        let (mut values, height) = self.step_values(steps, i, &between);
         if let (true, Shown::Light(light)) = (LIT, self.grid.shown) {
             let p = place * self.grid.step + self.grid.begin;
             let at = [self.others + self.xi, p, height];
@@ -250,20 +244,28 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         i: usize,
         between: &Between,
     ) -> [LineLanes; 3] {
-        let [near, far] = &steps.starts;
-        let ([r, g, b, x, y, z], _) = self.values::<6>(near[i], between);
-        let (mut color, mut normal) = ([r, g, b], [x, y, z]);
-        if HALVES && near[i] != far[i] {
-            let ([r, g, b, x, y, z], _) = self.values::<6>(far[i], between);
-            let others = ([r, g, b], [x, y, z]);
-            for c in 0..3 {
-                color[c] = (color[c] + others.0[c]) * 0.5;
-                normal[c] = (normal[c] + others.1[c]) * 0.5;
-            }
-        }
+        let ([r, g, b, x, y, z], _) = self.step_values(steps, i, between);
         let p = steps.places[i] * self.grid.step + self.grid.begin;
-        let shown = gloss.at(normal, [self.others + self.xi, p]);
-        color.map(|color| color * shown)
+        let shown = gloss.at([x, y, z], [self.others + self.xi, p]);
+        [r, g, b].map(|color| color * shown)
+    }
+
+    /// [`Self::values`] of a step: of its row, or of both rows beside it.
+    #[inline(always)]
+    fn step_values<const CHANNELS: usize>(
+        &self,
+        steps: &Steps,
+        i: usize,
+        between: &Between,
+    ) -> ([LineLanes; CHANNELS], LineLanes) {
+        let [near, far] = &steps.starts;
+        let (mut values, mut height) = self.values::<CHANNELS>(near[i], between);
+        if HALVES && near[i] != far[i] {
+            let (others, far_height) = self.values::<CHANNELS>(far[i], between);
+            (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
+            height = (height + far_height) * 0.5;
+        }
+        (values, height)
     }
 
     /// The values where lines cross a row, and their heights: colours and heights in units of

@@ -71,15 +71,11 @@ pub(super) struct SweepFrame<'a> {
 }
 
 /// Sums over the picked lanes.
-fn total(
-    pixels: &[Footprints],
-    picked: &[PixelLanes],
-    of: impl Fn(&Footprints) -> PixelLanes,
-) -> f32 {
-    sum(pixels
+pub(super) fn total<T>(vectors: &[T], picked: &[PixelLanes], of: impl Fn(&T) -> PixelLanes) -> f32 {
+    sum(vectors
         .iter()
         .zip(picked)
-        .fold(PixelLanes::ZERO, |all, (pixels, picked)| all + (of(pixels) & *picked)))
+        .fold(PixelLanes::ZERO, |all, (vector, picked)| all + (of(vector) & *picked)))
 }
 
 /// The means over the picked lanes of place and displacement, in repeats.
