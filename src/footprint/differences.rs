@@ -22,7 +22,7 @@
 use super::rule::FootprintRule;
 use crate::relief::finite;
 use crate::settings::{Derivatives, Formulas};
-use crate::simd::{PixelLanes, permute};
+use crate::simd::{PixelLanes, in_quads};
 
 /// `(d/dx, d/dy)` of u and v for eight pixels.
 type Pair = [[PixelLanes; 2]; 2];
@@ -41,11 +41,11 @@ pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &Footpr
         let [[a, b], [c, d]] = letter_by_letter(uv, offset, rule);
         return [[a, b], [c, d]];
     }
-    let flat = || in_quads(*uv);
+    let flat = || of_quads(*uv);
     if rule.derivatives == Derivatives::Flat {
         return flat();
     }
-    let displaced = in_quads([uv[0] + offset[0], uv[1] + offset[1]]);
+    let displaced = of_quads([uv[0] + offset[0], uv[1] + offset[1]]);
     if rule.max_stretch == 0.0 {
         return displaced;
     }
@@ -55,15 +55,11 @@ pub fn differences(uv: &[PixelLanes; 2], offset: &[PixelLanes; 2], rule: &Footpr
     [without_jump(displaced[0], dx, most), without_jump(displaced[1], dy, most)]
 }
 
-/// The differences of each quad's row and column.
+/// The differences of two numbers.
 #[inline(always)]
-fn in_quads([u, v]: [PixelLanes; 2]) -> Pair {
-    // The quad's pixels at the high and the low ends of each lane's row and column.
-    let dx =
-        |c: PixelLanes| permute(c, [1, 1, 3, 3, 5, 5, 7, 7]) - permute(c, [0, 0, 2, 2, 4, 4, 6, 6]);
-    let dy =
-        |c: PixelLanes| permute(c, [2, 3, 2, 3, 6, 7, 6, 7]) - permute(c, [0, 1, 0, 1, 4, 5, 4, 5]);
-    [[dx(u), dx(v)], [dy(u), dy(v)]]
+fn of_quads([u, v]: [PixelLanes; 2]) -> Pair {
+    let ([ux, uy], [vx, vy]) = (in_quads(u), in_quads(v));
+    [[ux, vx], [uy, vy]]
 }
 
 /// A derivative of formula (3), or that of (2) where the square of its length is more than `most`

@@ -22,7 +22,7 @@ mod segment;
 mod shadow;
 mod walk;
 
-pub use bent::{SEEN_DEPTH, bent, bow, displacement_over};
+pub use bent::{SEEN_DEPTH, are_at_outline, bent, bow, displacement_over};
 pub use climb::Climb;
 pub use displacement::{MAX_SLOPE, displacement, finite, stretch};
 pub use height_cells::{CellRays, HeightCells};

@@ -6,13 +6,18 @@ use crate::footprint::Footprints;
 use crate::light::{Curved, CurvedSun, Disc, FrameLanes, LinearSky, Slant, Ways};
 use crate::raster::{LitLanes, QuadBlock};
 use crate::relief::displacement;
-use crate::scene::{Light, Scene};
+use crate::scene::{Eye, Light, Scene};
+use crate::simd::PixelLanes;
 use glam::Vec3;
 use std::ops::Range;
 
 /// What lights pairs of a block.
 #[derive(Debug)]
 pub(super) struct CurvedLights {
+    eye: Eye,
+    relief_depth: f32,
+    discs: Vec<Disc>,
+    places: Vec<Vec3>,
     skies: Vec<[LinearSky; 8]>,
     suns: Vec<CurvedSun>,
     frames: Vec<FrameLanes>,
@@ -48,30 +53,59 @@ impl CurvedLights {
             intensity: *intensity,
             radius: disc.radius,
         };
-        let suns = discs.iter().map(sun).collect();
-        let (frames, slants, of_pairs) = Default::default();
-        let points = places.iter().map(|(_, intensity)| *intensity).collect();
-        let mut all = Self { skies: of_pairs, suns, frames, slants, points, ways: Vec::new() };
+        let mut all = Self {
+            eye: scene.camera.viewpoint(),
+            relief_depth,
+            suns: discs.iter().map(sun).collect(),
+            discs: discs.iter().map(|(disc, _)| *disc).collect(),
+            points: places.iter().map(|(_, intensity)| *intensity).collect(),
+            places: places.iter().map(|(place, _)| *place).collect(),
+            skies: Vec::new(),
+            frames: Vec::new(),
+            slants: Vec::new(),
+            ways: Vec::new(),
+        };
         for pair in pairs.map(|index| block.pair(index)) {
-            let Some(LitLanes { position, normal, tangent_u, tangent_v }) = pair.lit() else {
-                continue;
-            };
-            let frame = FrameLanes::new(
-                &position,
-                &normal,
-                &[tangent_u, tangent_v],
-                scene.camera.viewpoint(),
-            );
-            all.slants.extend(discs.iter().map(|(disc, _)| frame.slant(disc.to_middle)));
-            if !places.is_empty() {
-                let ray = (displacement(&pair.view(), relief_depth), relief_depth);
-                all.ways.extend(places.iter().map(|(at, _)| frame.ways(&position, *at, ray)));
-            }
+            let Some(lit) = pair.lit() else { continue };
+            let frame = all.add(&lit, || displacement(&pair.view(), relief_depth));
             if swept.has_sky {
-                all.skies.push(skies.of_pair((scene, occluders), &pair, &frame));
+                let sky = skies.of_pair((scene, occluders), &pair, &frame);
+                all.skies.push(sky);
             }
-            all.frames.push(frame);
         }
+        all
+    }
+
+    /// Adds how they shine on places, and how far what is seen there moves down to the deepest relief.
+    fn add(&mut self, lit: &LitLanes, displacement: impl Fn() -> [PixelLanes; 2]) -> FrameLanes {
+        let LitLanes { position, normal, tangent_u, tangent_v } = lit;
+        let frame = FrameLanes::new(position, normal, &[*tangent_u, *tangent_v], self.eye);
+        self.slants.extend(self.discs.iter().map(|disc| frame.slant(disc.to_middle)));
+        if !self.places.is_empty() {
+            let ray = (displacement(), self.relief_depth);
+            self.ways.extend(self.places.iter().map(|at| frame.ways(position, *at, ray)));
+        }
+        self.frames.push(frame);
+        frame
+    }
+
+    /// The same lights on the polygons above hits of a pixel's rays, under the sky of the pixel.
+    pub(super) fn at_hits(&self, lit: &LitLanes, [vector, lane]: [usize; 2]) -> Self {
+        let skies = self.skies.get(vector).map(|skies| [skies[lane]; 8]);
+        let mut all = Self {
+            eye: self.eye,
+            relief_depth: self.relief_depth,
+            suns: self.suns.clone(),
+            discs: self.discs.clone(),
+            points: self.points.clone(),
+            places: self.places.clone(),
+            skies: skies.into_iter().collect(),
+            frames: Vec::new(),
+            slants: Vec::new(),
+            ways: Vec::new(),
+        };
+        // A hit is straight below its polygon.
+        all.add(lit, || [PixelLanes::ZERO; 2]);
         all
     }
 
@@ -90,7 +124,7 @@ impl CurvedLights {
 
     /// All of them.
     pub(super) fn all(&self) -> Curved<'_> {
-        let Self { skies, suns, frames, slants, points, ways } = self;
+        let Self { skies, suns, frames, slants, points, ways, .. } = self;
         Curved { suns, skies, frames, slants, points, ways }
     }
 }

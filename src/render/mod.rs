@@ -23,6 +23,7 @@ mod passages;
 mod points;
 mod prepared;
 mod reflections;
+mod rims;
 mod shade;
 mod shadows;
 mod skies;

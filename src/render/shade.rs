@@ -8,6 +8,7 @@ use super::hidden_lights::HiddenLights;
 use super::mapped::Glow;
 use super::outlines::Outlines;
 use super::prepared::PreparedScene;
+use super::rims::Rims;
 use crate::filter::{
     Batch, Filtered, Prepared, Reads, SampleOffsets, Samples, Scratch, Traits, Work,
 };
@@ -232,26 +233,30 @@ impl<'a> Shader<'a> {
         // Filter all pairs at once, so that pixels near each other can share work.
         // Whatever an earlier block left stays: each covered pixel is written, others are not looked at.
         filtered.resize(pairs.len(), Filtered::default());
-        let mut curved_lights;
-        let curved = if let Some(swept) = ground.swept {
-            curved_lights = CurvedLights::new(
+        let curved_lights = ground.swept.map(|swept| {
+            let mut lights = CurvedLights::new(
                 (self.scene, self.prepared),
                 (swept, ground.prepared.surface().relief_depth()),
                 block,
                 pairs.clone(),
             );
-            curved_lights.occlude(ground, footprints);
-            Some(curved_lights.all())
-        } else {
-            None
-        };
+            lights.occlude(ground, footprints);
+            lights
+        });
         bows.clear();
         if let (Reads::Seen { .. }, Some(field)) = (self.traits.reads, ground.prepared.field()) {
-            find_bows(field, (block, pairs), bows);
+            find_bows(field, (block, pairs.clone()), footprints, bows);
         }
+        let outlines = self.outlines.filter(|_| !bows.is_empty());
+        let rims = outlines
+            .map(|outlines| Rims::take_off((outlines, ground), (block, pairs.clone()), footprints));
+        let curved = curved_lights.as_ref().map(CurvedLights::all);
         let curved = curved.as_ref();
         let batch = Batch { pixels: footprints, lights, curved, bows, ..Batch::default() };
         self.count(self.settings.filter.colors(ground.prepared, &batch, filter, filtered));
+        if let Some(rims) = rims {
+            rims.draw(pairs.start, footprints, curved_lights.as_ref(), filtered);
+        }
         if ground.asks_for_lights() {
             // Light the means; the lights come in the order in which they were listed.
             let mut lights = lights.iter();

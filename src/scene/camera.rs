@@ -133,9 +133,12 @@ impl Camera {
 
     /// The axes of view space in world space: right, up and forward, each of length one.
     pub fn axes(&self) -> [Vec3; 3] {
-        let forward = (self.target - self.eye).normalize();
-        let right = forward.cross(self.up).normalize();
-        [right, right.cross(forward), forward]
+        // Where the view is nearly along `up`, their product in f32 is not across both; where it is
+        // just along it, that in f64 is 0.
+        let ahead = self.target.as_dvec3() - self.eye.as_dvec3();
+        let right = ahead.cross(self.up.as_dvec3()).normalize();
+        let forward = ahead.normalize();
+        [right, right.cross(forward), forward].map(|axis| axis.as_vec3())
     }
 
     /// Where its rays come from.

@@ -195,7 +195,8 @@ impl Walk<'_> {
             }
             prism = beyond;
         }
-        Some(prism)
+        // Edge on, it has no place where the ray passes.
+        prism.shares(0.0).iter().all(|share| share.is_finite()).then_some(prism)
     }
 
     /// Whether a triangle is seen from behind where the ray begins.

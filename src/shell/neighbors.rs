@@ -1,6 +1,8 @@
 //! Which triangles of a mesh meet at an edge.
 
 use crate::scene::Mesh;
+use glam::{BVec3, DVec3, I64Vec3, Vec3};
+use std::collections::HashMap;
 
 /// No neighbour: the border of the mesh, or a crease.
 pub(super) const NONE: u32 = u32::MAX;
@@ -9,10 +11,33 @@ pub(super) const NONE: u32 = u32::MAX;
 /// a crease.
 const SMOOTH: f32 = 0.5;
 
+/// How far apart vertices may lie on both sides of a seam, as a share of the greatest coordinate: what
+/// is computed twice, as the first and the last point of a circle, is rounded twice.
+const SEAM: f64 = 1e-6;
+
 /// Across each edge of each triangle, the other triangle times three plus its edge, or [`NONE`].
 /// Vertices in one place count as one: texture coordinates often end within a smooth surface.
 pub(super) fn find(mesh: &Mesh) -> Vec<[u32; 3]> {
-    let places = places(mesh);
+    let mut places = places(mesh);
+    let neighbors = joined(mesh, &places);
+    let edges = neighbors.iter().zip(&mesh.triangles).flat_map(|(neighbors, triangle)| {
+        (0..3).filter(|i| neighbors[*i] == NONE).map(|i| [triangle[i], triangle[(i + 1) % 3]])
+    });
+    let mut border: Vec<u32> = edges.flatten().map(|i| places[i as usize]).collect();
+    border.sort_unstable();
+    border.dedup();
+    let welded = weld(mesh, &border);
+    if welded.is_empty() {
+        return neighbors;
+    }
+    for place in &mut places {
+        *place = welded.get(place).copied().unwrap_or(*place);
+    }
+    joined(mesh, &places)
+}
+
+/// The neighbours across edges whose ends are in the same places.
+fn joined(mesh: &Mesh, places: &[u32]) -> Vec<[u32; 3]> {
     let ends = |edge: u32| {
         let triangle = mesh.triangles[edge as usize / 3].map(|i| i as usize);
         let (i, j) = (edge as usize % 3, (edge as usize + 1) % 3);
@@ -47,6 +72,36 @@ pub(super) fn find(mesh: &Mesh) -> Vec<[u32; 3]> {
         }
     }
     neighbors
+}
+
+/// For vertices of the border that are nearly in the place of one before them, that one.
+fn weld(mesh: &Mesh, border: &[u32]) -> HashMap<u32, u32> {
+    let mut welded = HashMap::new();
+    let most = |most: f32, position: &Vec3| most.max(position.abs().max_element());
+    let reach = f64::from(mesh.positions.iter().fold(0.0, most)) * SEAM;
+    if !(reach > 0.0 && reach.is_finite()) {
+        return welded;
+    }
+    // What is near lies in the cells of the eight corners of a box around it: each is twice as wide.
+    let cell = |place: DVec3| (place / (2.0 * reach)).floor().as_i64vec3();
+    let mut firsts: HashMap<_, Vec<u32>> = HashMap::new();
+    for &i in border {
+        let place = mesh.positions[i as usize].as_dvec3();
+        let is_near =
+            |first: &u32| mesh.positions[*first as usize].as_dvec3().distance(place) <= reach;
+        let [low, high] = [-reach, reach].map(|reach| cell(place + reach));
+        let corners = (0..8).map(|corner| {
+            let is_high = BVec3::new(corner & 1 != 0, corner & 2 != 0, corner & 4 != 0);
+            I64Vec3::select(is_high, high, low)
+        });
+        let near = corners.filter_map(|cell| firsts.get(&cell)).flatten().filter(|i| is_near(i));
+        if let Some(first) = near.min() {
+            welded.insert(i, *first);
+        } else {
+            firsts.entry(cell(place)).or_default().push(i);
+        }
+    }
+    welded
 }
 
 /// A number for each vertex that those in one place share.

@@ -248,6 +248,16 @@ pub fn permute(values: f32x8, numbers: [u32; 8]) -> f32x8 {
     lanes(words.shuffle(u32x8::new(numbers)))
 }
 
+/// The differences along the row and along the column of each 2x2 quad, lane `4 * quad + 2 * dy + dx`.
+#[inline(always)]
+pub fn in_quads(values: f32x8) -> [f32x8; 2] {
+    let ends = |high, low| permute(values, high) - permute(values, low);
+    [
+        ends([1, 1, 3, 3, 5, 5, 7, 7], [0, 0, 2, 2, 4, 4, 6, 6]),
+        ends([2, 3, 2, 3, 6, 7, 6, 7], [0, 1, 0, 1, 4, 5, 4, 5]),
+    ]
+}
+
 /// The same bits as signed numbers.
 pub fn as_signed(words: u32x8) -> i32x8 {
     wide::bytemuck::cast(words)

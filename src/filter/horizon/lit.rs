@@ -8,9 +8,11 @@
 use super::fit::{Fit, Linear, azimuth};
 use super::near_light::PatchPoint;
 use super::pixels::PixelOnLines;
-use crate::light::{Curved, CurvedSun, LinearSky, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE, Slant};
+use crate::light::{
+    Curved, CurvedSun, Horizons, LinearSky, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE, Slant,
+};
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, u32x16};
-use crate::texture::Rows;
+use crate::texture::{FULL_F32, Rows, Surface, near_origin};
 use glam::Vec3;
 
 /// The lights of a patch.
@@ -119,6 +121,28 @@ impl PatchSun {
             part,
         }
     }
+}
+
+/// What a white surface shows of the lights of a curved one at a place of its texture, in repeats and of
+/// a depth, as a lane of their first vector of pixels stands.
+pub(crate) fn light_at(
+    (curved, lane): (&Curved, usize),
+    (horizons, surface): (&Horizons, &Surface),
+    (place, depth): ([f32; 2], f32),
+) -> [f32; 3] {
+    let here = [PixelOnLines { half_width: 1.0, half_height: 1.0, ..PixelOnLines::default() }];
+    let rows = horizons.rows(0, false);
+    let light = PatchLight::new(curved, rows, &[lane as u8], &here);
+    let [x, y] = surface.base().in_texels(near_origin(place, surface.wrap())).map(|c| c - 0.5);
+    let [column, row] = [x, y].map(f32::floor);
+    let between = Between::new(LineLanes::splat(x - column));
+    let height = LineLanes::splat((1.0 - depth) * (FULL_F32 * BETWEEN_SCALE));
+    let [near, far] = [0, 1].map(|i| {
+        let start = rows.start_at(column as i32, row as i32 + i);
+        let shown = light.at(start, &between, [LineLanes::ZERO, LineLanes::ZERO, height], 0.0);
+        shown.map(|lanes| lanes.as_array()[0])
+    });
+    [0, 1, 2].map(|c| near[c] + (far[c] - near[c]) * (y - row))
 }
 
 impl<'a> PatchLight<'a> {

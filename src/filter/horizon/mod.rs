@@ -37,6 +37,8 @@ mod sweep;
 mod sweep_frame;
 mod walk;
 
+pub(crate) use lit::light_at;
+
 use super::batch::{Batch, Filtered, LevelChoice, Work};
 use super::far_field::FarField;
 use super::prepared::Prepared;
