@@ -32,7 +32,6 @@ pub(super) struct Rims<'a> {
     outlines: &'a Outlines<'a>,
     ground: &'a Ground<'a>,
     block: &'a QuadBlock<'a>,
-    samples: SampleOffsets,
     /// Pairs, counted from the first, and bits of their pixels.
     pixels: Vec<(usize, u8)>,
 }
@@ -55,8 +54,7 @@ impl<'a> Rims<'a> {
                 pixels.push((i, rim));
             }
         }
-        let samples = Samples { num: NUM_RAYS, is_exact: true }.offsets();
-        Self { outlines, ground, block, samples, pixels }
+        Self { outlines, ground, block, pixels }
     }
 
     /// Draws them, where they are lit with the lights of the pairs.
@@ -67,6 +65,10 @@ impl<'a> Rims<'a> {
         lights: Option<&CurvedLights>,
         out: &mut [Filtered],
     ) {
+        if self.pixels.is_empty() {
+            return;
+        }
+        let samples = Samples { num: NUM_RAYS, is_exact: true }.offsets();
         for &(i, rim) in &self.pixels {
             let pair = self.block.pair(first + i);
             for lane in set_bits(rim) {
@@ -74,7 +76,7 @@ impl<'a> Rims<'a> {
                 let center = pixel_center(&pair, lane);
                 let size = self.texel_size(&footprints[i].lane(lane));
                 let lights = lights.map(|lights| (lights, [i, lane]));
-                let color = self.color((triangle, center), size, lights);
+                let color = self.color((triangle, center), (&samples, size), lights);
                 (0..3).for_each(|c| out[i].color[c].as_mut_array()[lane] = color[c]);
             }
         }
@@ -94,12 +96,12 @@ impl<'a> Rims<'a> {
     fn color(
         &self,
         (triangle, [x, y]): ([u32; 2], [f32; 2]),
-        size: f32,
+        (samples, size): (&SampleOffsets, f32),
         lights: Option<(&CurvedLights, [usize; 2])>,
     ) -> Vec3 {
         let prepared = self.ground.prepared;
         let (mut sum, mut num_hits) = (Vec3::ZERO, 0.0_f32);
-        for &([dx, dy], num) in &self.samples.groups {
+        for &([dx, dy], num) in &samples.groups {
             let asked = (0xff_u16 >> (8 - num)) as u8;
             let hits = self.outlines.hits(triangle, [dx + x, dy + y], asked);
             let lights = lights.and_then(|(lights, pixel)| {

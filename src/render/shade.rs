@@ -247,7 +247,7 @@ impl<'a> Shader<'a> {
         if let (Reads::Seen { .. }, Some(field)) = (self.traits.reads, ground.prepared.field()) {
             find_bows(field, (block, pairs.clone()), footprints, bows);
         }
-        let outlines = self.outlines.filter(|_| !bows.is_empty());
+        let outlines = self.outlines.filter(|_| !bows.is_empty() && !ground.asks_for_lights());
         let rims = outlines
             .map(|outlines| Rims::take_off((outlines, ground), (block, pairs.clone()), footprints));
         let curved = curved_lights.as_ref().map(CurvedLights::all);
