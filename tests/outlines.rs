@@ -9,7 +9,9 @@ use basrelief::relief::{HeightField, ReliefPlace, march};
 use basrelief::shell::{Met, Shell, ViewRay, Width};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::{HeightImage, Surface, SurfaceMaps, Wrap};
-use basrelief::{Eye, Filter, Frame, Layer, Mesh, Rays, Renderer, Scene, Settings};
+use basrelief::{
+    Eye, Filter, Frame, Layer, Light, Lighting, Mesh, Rays, Renderer, Scene, Settings, Sky,
+};
 use common::{Random, cobbles, floor_scene, rough_surface};
 use displaced::{
     ball_in_stones, decibels, depths_within, displaced, overlap, scene, show, sphere, torus,
@@ -84,6 +86,28 @@ fn rays_cross_a_seam_that_is_rounded_twice() {
         [whole, rounded].map(|scene| draw(&scene, settings(Filter::Truth(Rays { samples: 4 }))));
     let found = [overlap(&rounded, &whole), decibels(&rounded, &whole)];
     assert!(found[0] > 0.999 && found[1] > 60.0, "overlap and decibels {found:?}");
+}
+
+/// Smooth normals turn away from the eye where the polygons of a ball of few do not: what is seen of
+/// them is their front all the same.
+#[test]
+fn outlines_of_smooth_meshes_are_lit_from_the_side_that_is_seen() {
+    let maps = SurfaceMaps { relief_depth: 0.0, ..SurfaceMaps::default() };
+    let mut scene = scene(sphere([8, 16]), maps, 2.6);
+    // Corners stand 43 and 88 degrees to the right of the eye, and the sun 95.
+    let around = |degrees: f32| Vec3::new(degrees.cos(), 0.0, -degrees.sin());
+    scene.camera.eye = around(47_f32.to_radians()) * 2.6;
+    let (to_light, intensity) = (around(142_f32.to_radians()), Vec3::ONE);
+    scene.lights = vec![Light::Sun { to_light, intensity, angular_size: 0.0 }];
+    scene.sky = Sky::Color(Vec3::ZERO);
+    assert!(scene.camera.axes()[0].dot(to_light) > 0.9, "the sun is to the right");
+    for filter in [Filter::Nearest, Filter::Truth(Rays { samples: 16 })] {
+        let frame = draw(&scene, Settings { lighting: Lighting::Lit, ..settings(filter) });
+        let row = &frame.pixels[32 * 96..33 * 96];
+        let last = row.iter().rposition(|pixel| pixel[3] > 0.5).expect("a ball");
+        let [inner, outer] = [last - 6, last].map(|x| row[x][0] / row[x][3]);
+        assert!(outer > inner, "{outer} at the outline, {inner} within");
+    }
 }
 
 /// Where the ball's lower half ends: pixels of it beside others.

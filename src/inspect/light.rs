@@ -65,7 +65,7 @@ impl PixelLight {
                 Light::Sun { to_light, .. } => to_light,
                 Light::Point { position, .. } => position - point.position,
             };
-            let [_, _, normal] = point.axes(scene.camera.viewpoint());
+            let [_, _, normal] = point.axes();
             let frame = TextureFrame { tangents: point.tangents, normal };
             let beam = frame.beam(to_light.normalize_or_zero(), Vec3::ONE)?;
             let displacement = beam.slope.map(|slope| slope * field.relief_depth);

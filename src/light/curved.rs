@@ -3,7 +3,6 @@
 use super::disc::spiral;
 use super::vectors::{Vectors, cross, dot, repeat_length};
 use crate::relief::finite;
-use crate::scene::Eye;
 use crate::simd::PixelLanes;
 use glam::Vec3;
 
@@ -16,25 +15,6 @@ pub struct FrameLanes {
     pub axes: [Vectors; 3],
     /// Lanes that show the back.
     pub is_back: PixelLanes,
-    /// How much of each pixel lies on the side that it shows: at an outline the normals of a smooth
-    /// mesh turn away within a pixel, and what they turn to is the inside.
-    pub shown: PixelLanes,
-}
-
-/// How much of a pixel's kernel lies next to a line through its middle, for each pixel of distance.
-const DENSITY: f32 = 0.88;
-
-/// How far the eye sees each pixel's front, in pixels from the outline, by the products of its normal
-/// and the way to the eye.
-fn from_outline(facing: PixelLanes) -> PixelLanes {
-    let facing = facing.to_array();
-    PixelLanes::new(std::array::from_fn(|lane| {
-        let quad = lane / 4 * 4;
-        let [dx, dy] = [1, 2].map(|i| facing[quad + i] - facing[quad]);
-        // Where nothing turns there is no outline near by.
-        let growth = (dx * dx + dy * dy).sqrt().max(1e-3 * facing[lane].abs());
-        if growth > 0.0 { facing[lane] / growth } else { 1.0 }
-    }))
 }
 
 /// Light from one direction at eight pixels, as a texture sees it.
@@ -144,18 +124,14 @@ pub struct LinearSky {
 }
 
 impl FrameLanes {
-    /// At points with normals and tangents of any length, seen from `eye`.
-    pub fn new(position: &Vectors, normal: &Vectors, tangents: &[Vectors; 2], eye: Eye) -> Self {
-        let to_eye = [0, 1, 2].map(|i| PixelLanes::splat(eye.place[i]) - position[i] * eye.share);
-        let part = from_outline(dot(normal, &to_eye)) * DENSITY + 0.5;
-        let is_back = part.simd_le(PixelLanes::ZERO);
-        let shown = is_back.select(PixelLanes::ONE - part, part).fast_min(PixelLanes::ONE);
+    /// At points with normals and tangents of any length, some seen from behind.
+    pub fn new(normal: &Vectors, tangents: &[Vectors; 2], is_back: PixelLanes) -> Self {
         let normal = unit(normal).map(|c| is_back.select(-c, c));
         let [u, v] = tangents.map(|t| {
             let along = dot(&t, &normal);
             unit(&[0, 1, 2].map(|i| t[i] - normal[i] * along))
         });
-        Self { tangents: *tangents, axes: [u, v, normal], is_back, shown }
+        Self { tangents: *tangents, axes: [u, v, normal], is_back }
     }
 
     /// The ways from pixels at `position` to a point. Down to the deepest relief their view rays

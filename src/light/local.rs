@@ -44,7 +44,7 @@ pub struct Reflected {
 impl LocalLights {
     /// The lights at a point seen from `eye`. A surface seen from behind is lit on that side.
     pub fn at(point: &SurfacePoint, eye: Eye, lights: &[Light], sky: &Sky) -> Self {
-        let axes = point.axes(eye);
+        let axes = point.axes();
         let [u, v, normal] = axes;
         let local = |w: Vec3| Vec3::new(u.dot(w), v.dot(w), normal.dot(w));
         let lights = lights.iter().map(|light| {

@@ -1,6 +1,5 @@
 //! Where a surface is in the world, and how it lies.
 
-use crate::scene::Eye;
 use glam::Vec3;
 
 /// World-space place and frame of a surface point.
@@ -12,15 +11,17 @@ pub struct SurfacePoint {
     pub normal: Vec3,
     /// dP/du and dP/dv, of any length.
     pub tangents: [Vec3; 2],
+    /// Whether its polygon is seen from behind. At an outline smooth normals turn away from the eye
+    /// where the polygon does not.
+    pub is_back: bool,
 }
 
 impl SurfacePoint {
     /// The unit axes of the texture's frame in the world: along u, along v, and off the surface on
-    /// the eye's side. u and v may be oblique.
-    pub(crate) fn axes(&self, eye: Eye) -> [Vec3; 3] {
+    /// the side that is seen. u and v may be oblique.
+    pub(crate) fn axes(&self) -> [Vec3; 3] {
         let normal = self.normal.normalize_or(Vec3::Z);
-        let normal = if normal.dot(eye.seen_from(self.position)) < 0.0 { -normal } else { normal };
-        unit_axes(self.tangents, normal)
+        unit_axes(self.tangents, if self.is_back { -normal } else { normal })
     }
 }
 

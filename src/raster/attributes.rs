@@ -126,7 +126,10 @@ impl<'a> PlaneMaker<'a> {
         }
         fill_tint(planes, &basis, corners);
         if self.is_lit {
-            fill_lit(planes, &basis, corners);
+            let across =
+                cross(difference(from_eye[1], from_eye[0]), difference(from_eye[2], from_eye[0]));
+            let is_back = dot(across, self.projection.rays(from_eye[0])).simd_gt(f64x8::ZERO);
+            fill_lit(planes, &basis, (corners, is_back.to_bitmask()));
         } else {
             // Planes are kept from frame to frame, and the frame before may have been lit.
             planes.iter_mut().for_each(|planes| planes.lit = None);
@@ -162,7 +165,11 @@ fn fill_tint(planes: &mut [AttributePlanes], basis: &BasisLanes, corners: &[Corn
     }
 }
 
-fn fill_lit(planes: &mut [AttributePlanes], basis: &BasisLanes, corners: &[Corners; 8]) {
+fn fill_lit(
+    planes: &mut [AttributePlanes],
+    basis: &BasisLanes,
+    (corners, is_back): (&[Corners; 8], u32),
+) {
     let positions = vectors(corners, |mesh, i| mesh.positions[i]);
     let (normals, [tangents_u, tangents_v]) = frames(corners);
     let [position, normal, tangent_u, tangent_v] = [positions, normals, tangents_u, tangents_v]
@@ -174,6 +181,7 @@ fn fill_lit(planes: &mut [AttributePlanes], basis: &BasisLanes, corners: &[Corne
             normal: three(&normal),
             tangent_u: three(&tangent_u),
             tangent_v: three(&tangent_v),
+            is_back: is_back >> lane & 1 == 1,
         };
     }
 }

@@ -7,7 +7,7 @@
 //! only.
 
 pub use crate::geometry::Plane;
-use crate::simd::{PixelLanes, set_bits};
+use crate::simd::{PixelLanes, bits_mask, set_bits};
 
 /// Everything that varies over one triangle.
 #[derive(Clone, Debug, Default)]
@@ -46,6 +46,8 @@ pub struct LitPlanes {
     pub tangent_u: [Plane; 3],
     /// dP/dv; 0 without texture coordinates.
     pub tangent_v: [Plane; 3],
+    /// Whether the polygon is seen from behind, however its normals are smoothed.
+    pub is_back: bool,
 }
 
 /// World-space attributes at eight pixels.
@@ -59,6 +61,8 @@ pub struct LitLanes {
     pub tangent_u: [PixelLanes; 3],
     /// dP/dv; 0 without texture coordinates.
     pub tangent_v: [PixelLanes; 3],
+    /// All bits of the lanes whose polygon is seen from behind.
+    pub is_back: PixelLanes,
 }
 
 /// Two 2x2 quads of triangles of one material: eight pixel lanes, lane `4 * quad + 2 * dy + dx`.
@@ -246,6 +250,10 @@ impl<const IS_ONE: bool> Places<'_, IS_ONE> {
             normal: vector(|lit| &lit.normal),
             tangent_u: vector(|lit| &lit.tangent_u),
             tangent_v: vector(|lit| &lit.tangent_v),
+            is_back: {
+                let [a, b] = lit.map(|lit| if lit.is_back { 0xf } else { 0 });
+                bits_mask(a | b << 4)
+            },
         })
     }
 }

@@ -6,7 +6,7 @@ use crate::footprint::Footprints;
 use crate::light::{Curved, CurvedSun, Disc, FrameLanes, LinearSky, Slant, Ways};
 use crate::raster::{LitLanes, QuadBlock};
 use crate::relief::displacement;
-use crate::scene::{Eye, Light, Scene};
+use crate::scene::{Light, Scene};
 use crate::simd::PixelLanes;
 use glam::Vec3;
 use std::ops::Range;
@@ -14,7 +14,6 @@ use std::ops::Range;
 /// What lights pairs of a block.
 #[derive(Debug)]
 pub(super) struct CurvedLights {
-    eye: Eye,
     relief_depth: f32,
     discs: Vec<Disc>,
     places: Vec<Vec3>,
@@ -54,7 +53,6 @@ impl CurvedLights {
             radius: disc.radius,
         };
         let mut all = Self {
-            eye: scene.camera.viewpoint(),
             relief_depth,
             suns: discs.iter().map(sun).collect(),
             discs: discs.iter().map(|(disc, _)| *disc).collect(),
@@ -78,8 +76,8 @@ impl CurvedLights {
 
     /// Adds how they shine on places, and how far what is seen there moves down to the deepest relief.
     fn add(&mut self, lit: &LitLanes, displacement: impl Fn() -> [PixelLanes; 2]) -> FrameLanes {
-        let LitLanes { position, normal, tangent_u, tangent_v } = lit;
-        let frame = FrameLanes::new(position, normal, &[*tangent_u, *tangent_v], self.eye);
+        let LitLanes { position, normal, tangent_u, tangent_v, is_back } = lit;
+        let frame = FrameLanes::new(normal, &[*tangent_u, *tangent_v], *is_back);
         self.slants.extend(self.discs.iter().map(|disc| frame.slant(disc.to_middle)));
         if !self.places.is_empty() {
             let ray = (displacement(), self.relief_depth);
@@ -93,7 +91,6 @@ impl CurvedLights {
     pub(super) fn at_hits(&self, lit: &LitLanes, [vector, lane]: [usize; 2]) -> Self {
         let skies = self.skies.get(vector).map(|skies| [skies[lane]; 8]);
         let mut all = Self {
-            eye: self.eye,
             relief_depth: self.relief_depth,
             suns: self.suns.clone(),
             discs: self.discs.clone(),

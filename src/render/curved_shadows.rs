@@ -12,7 +12,6 @@ use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
 use crate::light::{FrameLanes, Vectors, cross, repeat_length};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
 use crate::relief::displacement;
-use crate::scene::Scene;
 use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
 
@@ -20,16 +19,15 @@ use glam::Vec3;
 const LEAST_FACING: f32 = 0.1;
 
 impl Shader<'_> {
-    /// Finds the parts of suns that are not seen from the pixels of a block of a curved surface, and
-    /// returns the part of each pixel that lies on the side that is seen.
+    /// Finds the parts of suns that are not seen from the pixels of a block of a curved surface.
     pub(super) fn hide_on_curved(
         &self,
         ground: &Ground,
         block: &QuadBlock,
         hidden: &mut HiddenLights,
-    ) -> Vec<PixelLanes> {
+    ) {
         let occluders = self.prepared.occluders(self.scene);
-        let rays = block.pairs().filter_map(|pair| ViewRays::new(self.scene, ground, &pair));
+        let rays = block.pairs().filter_map(|pair| ViewRays::new(ground, &pair));
         let rays: Vec<_> = rays.collect();
         let of_sun = |ceiling: &Ceiling| {
             let mut hidden = vec![PixelLanes::ZERO; rays.len()];
@@ -56,7 +54,6 @@ impl Shader<'_> {
                 *hidden = of_sun(ceiling);
             }
         }
-        rays.iter().map(|rays| rays.shown).collect()
     }
 }
 
@@ -91,8 +88,6 @@ struct ViewRays {
     way: Vectors,
     /// Unit normals on the eye's side.
     normal: Vectors,
-    /// See [`FrameLanes::shown`].
-    shown: PixelLanes,
     /// See [`Places`].
     steps: [Vectors; 2],
     reach: PixelLanes,
@@ -100,11 +95,9 @@ struct ViewRays {
 }
 
 impl ViewRays {
-    fn new(scene: &Scene, ground: &Ground, pair: &QuadPair) -> Option<Self> {
-        let LitLanes { position, normal, tangent_u, tangent_v } = pair.lit()?;
-        let frame =
-            FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], scene.camera.viewpoint());
-        let (normal, shown) = (frame.axes[2], frame.shown);
+    fn new(ground: &Ground, pair: &QuadPair) -> Option<Self> {
+        let LitLanes { position, normal, tangent_u, tangent_v, is_back } = pair.lit()?;
+        let [_, _, normal] = FrameLanes::new(&normal, &[tangent_u, tangent_v], is_back).axes;
         let relief_depth = ground.prepared.surface().relief_depth();
         let moved = displacement(&pair.view(), relief_depth);
         let down = repeat_length(&cross(&tangent_u, &tangent_v)) * relief_depth;
@@ -112,7 +105,7 @@ impl ViewRays {
             [0, 1, 2].map(|i| tangent_u[i] * moved[0] + tangent_v[i] * moved[1] - down * normal[i]);
         let covered = pair.covered_bits();
         let steps = steps(&position);
-        Some(Self { polygon: position, way, normal, shown, steps, reach: down * 2.0, covered })
+        Some(Self { polygon: position, way, normal, steps, reach: down * 2.0, covered })
     }
 
     /// All of their points by the axes across a light and to it.

@@ -162,11 +162,11 @@ pub(crate) fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
 
 /// The polygon's point at a place of the screen; `None` without lighting.
 pub(crate) fn surface_point(planes: &AttributePlanes, [x, y]: [f32; 2]) -> Option<SurfacePoint> {
-    let LitPlanes { position, normal, tangent_u, tangent_v, .. } = planes.lit.as_deref()?;
+    let LitPlanes { position, normal, tangent_u, tangent_v, is_back } = planes.lit.as_deref()?;
     let [a, b, c] = planes.inverse_w;
     // Divided once for all twelve coordinates.
     let w = 1.0 / (a * x + b * y + c);
     let at = |planes: &[Plane; 3]| Vec3::from(planes.map(|[a, b, c]| (a * x + b * y + c) * w));
     let tangents = [at(tangent_u), at(tangent_v)];
-    Some(SurfacePoint { position: at(position), normal: at(normal), tangents })
+    Some(SurfacePoint { position: at(position), normal: at(normal), tangents, is_back: *is_back })
 }

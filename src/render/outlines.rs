@@ -81,6 +81,7 @@ impl<'a> Outlines<'a> {
             position: mean(&|i| mesh.positions[i]),
             normal: mean(&|i| mesh.normals[i]),
             tangents: [0, 1].map(|axis| mean(&|i| mesh.tangents[i][axis])),
+            is_back: hit.is_back,
         }
     }
 

@@ -32,9 +32,8 @@ impl Shader<'_> {
         let occluders = self.prepared.occluders(self.scene);
         let pixels = block.pairs().map(|pair| {
             let lit = pair.lit()?;
-            let LitLanes { position, normal, tangent_u, tangent_v } = lit;
-            let eye = self.scene.camera.viewpoint();
-            let frame = FrameLanes::new(&position, &normal, &[tangent_u, tangent_v], eye);
+            let LitLanes { normal, tangent_u, tangent_v, is_back, .. } = lit;
+            let frame = FrameLanes::new(&normal, &[tangent_u, tangent_v], is_back);
             let places = places(&pair, ground, &lit, &frame.axes[2]);
             Some((places, frame.is_back.to_bitmask() as u8))
         });

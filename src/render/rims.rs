@@ -18,7 +18,7 @@ use crate::light::SurfacePoint;
 use crate::raster::{LitLanes, QuadBlock};
 use crate::relief::are_at_outline;
 use crate::shell::ReliefHit;
-use crate::simd::{PixelLanes, set_bits};
+use crate::simd::{PixelLanes, bits_mask, set_bits};
 use glam::Vec3;
 use std::ops::Range;
 
@@ -135,6 +135,11 @@ impl<'a> Rims<'a> {
             normal: lanes(|point| point.normal),
             tangent_u: lanes(|point| point.tangents[0]),
             tangent_v: lanes(|point| point.tangents[1]),
+            is_back: {
+                let is_back = |hit: &Option<ReliefHit>| hit.is_some_and(|hit| hit.is_back);
+                let bits = hits.iter().enumerate().map(|(i, hit)| u8::from(is_back(hit)) << i);
+                bits_mask(bits.sum())
+            },
         }
     }
 }

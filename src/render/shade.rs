@@ -121,12 +121,9 @@ impl<'a> Shader<'a> {
         // What only sends out light sends out its colour.
         let is_glowing = material.base_color == Vec3::ZERO;
         if let Some(swept) = ground.swept {
-            let shown = self.hide_on_curved(&ground, block, &mut hidden);
+            self.hide_on_curved(&ground, block, &mut hidden);
             self.hide_points(&ground, block, &mut hidden);
             self.swept(&ground, (swept, &hidden), block, &mut scratch, colors);
-            for (color, shown) in colors[start..].iter_mut().zip(shown) {
-                color.iter_mut().for_each(|channel| *channel *= shown);
-            }
         } else {
             self.textured(&ground, block, &mut scratch, colors);
         }

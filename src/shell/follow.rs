@@ -57,6 +57,8 @@ pub struct ReliefHit {
     pub place: ReliefPlace,
     /// Distance from the eye.
     pub distance: f64,
+    /// Whether the ray came in from behind, where relief is on the other side.
+    pub is_back: bool,
 }
 
 /// A point of the ray within a prism.
@@ -286,7 +288,8 @@ impl Walk<'_> {
 
     fn hit(&self, prism: &Prism, at: &Point) -> ReliefHit {
         let (shares, place) = (at.shares, at.place);
-        ReliefHit { triangle: prism.triangle, shares, place, distance: self.distance(prism, at) }
+        let (distance, is_back) = (self.distance(prism, at), self.side < 0.0);
+        ReliefHit { triangle: prism.triangle, shares, place, distance, is_back }
     }
 
     /// How far from the eye a point is.

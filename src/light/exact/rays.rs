@@ -103,9 +103,9 @@ impl ExactLight<'_> {
 
 impl<'a> Ground<'a> {
     pub(super) fn new(exact: ExactLight<'a>, hit: &Hit<'a>) -> Self {
-        let SurfacePoint { position, normal, tangents } = hit.point;
+        let SurfacePoint { position, tangents, is_back, .. } = hit.point;
         let (camera, eye) = (&exact.scene.camera, exact.scene.camera.viewpoint());
-        let [u, v, n] = hit.point.axes(eye).map(|axis| axis.as_dvec3());
+        let [u, v, n] = hit.point.axes().map(|axis| axis.as_dvec3());
         let local = hit.spot.normal.as_dvec3();
         let position = position.as_dvec3();
         let far = position.abs().max_element() + (position - camera.eye.as_dvec3()).length();
@@ -116,7 +116,7 @@ impl<'a> Ground<'a> {
             to_eye: DVec3::ZERO,
             side: n,
             reach: far * ROUNDING,
-            is_turned: normal.as_dvec3().dot(n) < 0.0,
+            is_turned: is_back,
             relief: None,
             texture_from_world: DMat3::ZERO,
         };
