@@ -44,10 +44,15 @@ fn reach(
     [grown, ..]: &[[PixelLanes; 2]; 3],
     relief_depth: f32,
 ) -> PixelLanes {
-    let grown = grown[0] * *alpha + grown[1] * *beta;
+    let grown = along_ray([alpha, beta], grown);
     let reach = *gamma * *gamma / (grown * (-2.0 * relief_depth));
     let rises = reach.simd_ge(PixelLanes::ZERO) & reach.simd_lt(PixelLanes::ONE);
     rises.select(reach.fast_max(PixelLanes::splat(LEAST_REACH)), PixelLanes::ONE)
+}
+
+/// How much a number grows along a ray, by how it grows per repeat: `bend . w`.
+fn along_ray([alpha, beta]: [&PixelLanes; 2], growth: &[PixelLanes; 2]) -> PixelLanes {
+    growth[0] * *alpha + growth[1] * *beta
 }
 
 /// Bits of the pixels of two quads that see rays rise again which have hardly got into the relief: at
@@ -59,7 +64,7 @@ pub fn are_at_outline(
 ) -> u8 {
     let [dx, dy] = in_quads(*gamma);
     let least = (*gamma - dx.abs() - dy.abs()).fast_max(PixelLanes::ZERO);
-    let grown = grown[0] * *alpha + grown[1] * *beta;
+    let grown = along_ray([alpha, beta], grown);
     (least * least).simd_lt(grown * (-2.0 * NO_REACH * relief_depth)).to_bitmask() as u8
 }
 
@@ -101,7 +106,7 @@ fn bent_for(
     let straight = displacement(view, relief_depth);
     let length = stretch(view, relief_depth);
     // The share of gamma^2 that the bend takes or gives. Rays that pass above it bend the most.
-    let grown = (gamma[0] * alpha + gamma[1] * beta) * length * length;
+    let grown = along_ray([&alpha, &beta], gamma) * length * length;
     let left = PixelLanes::ONE + grown * depth * (2.0 / relief_depth);
     let farther = PixelLanes::splat(2.0) / (left.fast_max(PixelLanes::ZERO).sqrt() + 1.0);
     let once = [straight[0] * farther, straight[1] * farther];

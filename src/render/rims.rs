@@ -15,7 +15,7 @@ use super::outlines::Outlines;
 use crate::filter::{Filtered, SampleOffsets, Samples, light_at, points};
 use crate::footprint::{Footprint, Footprints};
 use crate::light::SurfacePoint;
-use crate::raster::{LitLanes, QuadBlock};
+use crate::raster::{AttributePlanes, LitLanes, QuadBlock};
 use crate::relief::are_at_outline;
 use crate::shell::ReliefHit;
 use crate::simd::{PixelLanes, bits_mask, set_bits};
@@ -72,11 +72,11 @@ impl<'a> Rims<'a> {
         for &(i, rim) in &self.pixels {
             let pair = self.block.pair(first + i);
             for lane in set_bits(rim) {
-                let triangle = pair.planes[lane / 4].triangle;
+                let planes = pair.planes[lane / 4];
                 let center = pixel_center(&pair, lane);
                 let size = self.texel_size(&footprints[i].lane(lane));
                 let lights = lights.map(|lights| (lights, [i, lane]));
-                let color = self.color((triangle, center), (&samples, size), lights);
+                let color = self.color((planes, center), (&samples, size), lights);
                 (0..3).for_each(|c| out[i].color[c].as_mut_array()[lane] = color[c]);
             }
         }
@@ -95,17 +95,20 @@ impl<'a> Rims<'a> {
     /// The mean of what rays around a place of the screen hit.
     fn color(
         &self,
-        (triangle, [x, y]): ([u32; 2], [f32; 2]),
+        (planes, [x, y]): (&AttributePlanes, [f32; 2]),
         (samples, size): (&SampleOffsets, f32),
         lights: Option<(&CurvedLights, [usize; 2])>,
     ) -> Vec3 {
         let prepared = self.ground.prepared;
         let (mut sum, mut num_hits) = (Vec3::ZERO, 0.0_f32);
         for &([dx, dy], num) in &samples.groups {
-            let asked = (0xff_u16 >> (8 - num)) as u8;
-            let hits = self.outlines.hits(triangle, [dx + x, dy + y], asked);
+            let places = ([dx + x, dy + y], num);
+            let Some(hits) = self.ground.hits(self.outlines, planes, places) else { continue };
             let lights = lights.and_then(|(lights, pixel)| {
-                Some((lights.at_hits(&self.lit(triangle[0], &hits), pixel), prepared.horizons()?))
+                Some((
+                    lights.at_hits(&self.lit(planes.triangle[0], &hits), pixel),
+                    prepared.horizons()?,
+                ))
             });
             for (lane, hit) in hits.iter().enumerate() {
                 let Some(hit) = hit else { continue };
@@ -136,9 +139,8 @@ impl<'a> Rims<'a> {
             tangent_u: lanes(|point| point.tangents[0]),
             tangent_v: lanes(|point| point.tangents[1]),
             is_back: {
-                let is_back = |hit: &Option<ReliefHit>| hit.is_some_and(|hit| hit.is_back);
-                let bits = hits.iter().enumerate().map(|(i, hit)| u8::from(is_back(hit)) << i);
-                bits_mask(bits.sum())
+                let is_back = |point: &Option<SurfacePoint>| point.is_some_and(|p| p.is_back);
+                bits_mask((0..8).map(|i| u8::from(is_back(&points[i])) << i).sum())
             },
         }
     }
