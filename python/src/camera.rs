@@ -6,14 +6,16 @@ use glam::Vec3;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-/// A pinhole camera. The world is right-handed.
+/// A pinhole camera, or an orthographic one. The world is right-handed.
 ///
-/// Camera(eye, target, up=(0, 1, 0), fov=60.0, near=0.01)
+/// Camera(eye, target, up=(0, 1, 0), fov=60.0, near=0.01, *, orthographic=None)
 ///
 /// eye, target, up: three numbers each: where the eye is and what lies in the middle of the
 ///     picture, in world units, and a direction that points upwards in the picture.
 /// fov: vertical field of view in degrees, above 0 and below 180.
 /// near: distance along the view, in world units, before which nothing is drawn.
+/// orthographic: in place of fov, the picture's height in world units, 1e-9 to 1e9, of a camera whose
+///     rays are all parallel to the view. Depths count from the eye along the view here, too.
 #[pyclass(frozen, eq, from_py_object, module = "basrelief")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Camera(pub(crate) basrelief::Camera);
@@ -26,23 +28,17 @@ fn checked(camera: basrelief::Camera) -> PyResult<Camera> {
 #[pymethods]
 impl Camera {
     #[new]
-    #[pyo3(signature = (eye, target, up = None, fov = 60.0, near = 0.01))]
+    #[pyo3(signature = (eye, target, up = None, fov = None, near = 0.01, *, orthographic = None))]
     fn new(
         eye: &Bound<'_, PyAny>,
         target: &Bound<'_, PyAny>,
         up: Option<&Bound<'_, PyAny>>,
-        fov: f32,
+        fov: Option<f32>,
         near: f32,
+        orthographic: Option<f32>,
     ) -> PyResult<Self> {
-        let up = up.map_or(Ok(Vec3::Y), |up| vector(up, "up"))?;
-        checked(basrelief::Camera {
-            eye: vector(eye, "eye")?,
-            target: vector(target, "target")?,
-            up,
-            fov_degrees: fov,
-            near,
-            ..basrelief::Camera::default()
-        })
+        let start = basrelief::Camera { near, ..basrelief::Camera::default() };
+        Self(start).replace(Some(eye), Some(target), up, fov, None, orthographic)
     }
 
     /// A camera as programs have it.
@@ -90,8 +86,10 @@ impl Camera {
         checked(basrelief::Camera::framing(least, most, aspect))
     }
 
-    /// The same camera with some of eye, target, up, fov and near replaced.
-    #[pyo3(signature = (*, eye = None, target = None, up = None, fov = None, near = None))]
+    /// The same camera with some of eye, target, up, fov, near and orthographic replaced: fov,
+    /// intrinsics and orthographic take each other's place.
+    #[pyo3(signature = (*, eye = None, target = None, up = None, fov = None, near = None,
+        orthographic = None))]
     fn replace(
         &self,
         eye: Option<&Bound<'_, PyAny>>,
@@ -99,20 +97,24 @@ impl Camera {
         up: Option<&Bound<'_, PyAny>>,
         fov: Option<f32>,
         near: Option<f32>,
+        orthographic: Option<f32>,
     ) -> PyResult<Self> {
         let given = |arg: Option<&Bound<'_, PyAny>>, name, own| {
             arg.map_or(Ok(own), |arg| vector(arg, name))
         };
-        // A field of view takes the place of intrinsics.
-        let intrinsics = self.0.intrinsics.filter(|_| fov.is_none());
+        if fov.is_some() && orthographic.is_some() {
+            return Err(refused("orthographic", "takes the place of fov"));
+        }
+        let intrinsics = self.0.intrinsics.filter(|_| fov.is_none() && orthographic.is_none());
+        let own_height = self.0.orthographic.filter(|_| fov.is_none());
         checked(basrelief::Camera {
             eye: given(eye, "eye", self.0.eye)?,
             target: given(target, "target", self.0.target)?,
             up: given(up, "up", self.0.up)?,
             fov_degrees: fov.unwrap_or(self.0.fov_degrees),
             intrinsics,
+            orthographic: orthographic.or(own_height),
             near: near.unwrap_or(self.0.near),
-            ..self.0
         })
     }
 
@@ -131,7 +133,8 @@ impl Camera {
         tuple(py, self.0.up)
     }
 
-    /// Vertical field of view in degrees; does not count where there are intrinsics.
+    /// Vertical field of view in degrees; does not count where there are intrinsics, nor where the
+    /// camera is orthographic.
     #[getter]
     fn fov(&self) -> f32 {
         self.0.fov_degrees
@@ -148,13 +151,21 @@ impl Camera {
         self.0.intrinsics.map(|i| (i.fx, i.fy, i.cx, i.cy))
     }
 
+    /// The picture's height in world units where all rays are parallel, or None.
+    #[getter]
+    fn orthographic(&self) -> Option<f32> {
+        self.0.orthographic
+    }
+
     fn __repr__(&self) -> String {
-        let basrelief::Camera { eye, target, up, fov_degrees, near, intrinsics, .. } = self.0;
+        let basrelief::Camera { eye, target, up, fov_degrees, intrinsics, orthographic, near } =
+            self.0;
         let [eye, target, up] = [eye, target, up].map(|v| format!("({}, {}, {})", v.x, v.y, v.z));
-        let lens = intrinsics.map_or_else(
-            || format!("fov={fov_degrees}"),
-            |i| format!("intrinsics=({}, {}, {}, {})", i.fx, i.fy, i.cx, i.cy),
-        );
+        let lens = match (intrinsics, orthographic) {
+            (Some(i), _) => format!("intrinsics=({}, {}, {}, {})", i.fx, i.fy, i.cx, i.cy),
+            (None, Some(height)) => format!("orthographic={height}"),
+            (None, None) => format!("fov={fov_degrees}"),
+        };
         format!("Camera(eye={eye}, target={target}, up={up}, {lens}, near={near})")
     }
 
@@ -168,6 +179,7 @@ impl Camera {
             self.0.fov_degrees,
             self.0.near,
             self.intrinsics(),
+            self.0.orthographic,
         );
         PyTuple::new(py, [rebuild, numbers.into_pyobject(py)?.into_any()])
     }
@@ -180,10 +192,11 @@ impl Camera {
         fov: f32,
         near: f32,
         intrinsics: Option<(f32, f32, f32, f32)>,
+        orthographic: Option<f32>,
     ) -> PyResult<Self> {
         let [eye, target, up] = [eye, target, up].map(Vec3::from);
         let intrinsics = intrinsics.map(|(fx, fy, cx, cy)| Intrinsics { fx, fy, cx, cy });
-        let start = basrelief::Camera::default();
-        checked(basrelief::Camera { eye, target, up, fov_degrees: fov, intrinsics, near, ..start })
+        let fov_degrees = fov;
+        checked(basrelief::Camera { eye, target, up, fov_degrees, intrinsics, orthographic, near })
     }
 }

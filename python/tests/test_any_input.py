@@ -99,8 +99,9 @@ def draw(random):
         lights.append(basrelief.PointLight(any_array(random, (3,)), number(random)))
     sky = maybe(random, lambda: basrelief.Environment(light(random)))
     scene = basrelief.Scene(meshes, lights, sky)
+    lens = {"orthographic": unit(random) * 9} if random.random() < 0.4 else {"fov": unit(random) * 150}
     camera = maybe(random, lambda: basrelief.Camera(
-        any_array(random, (3,)), any_array(random, (3,)), fov=unit(random) * 150, near=abs(number(random))))
+        any_array(random, (3,)), any_array(random, (3,)), near=abs(number(random)), **lens))
     name = str(random.choice(basrelief.FILTERS))
     options = {"samples": 2} if name in ("truth", "parallax") else {"far_field": False} if name == "horizon" else {}
     renderer = basrelief.Renderer(scene, filter=basrelief.Filter(name, **options), threads=1)

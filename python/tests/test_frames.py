@@ -142,11 +142,40 @@ def test_intrinsics_of_opencv_and_opengl_see_the_same(scene):
     assert (frames[0]["object"] == frames[2]["object"]).mean() > 0.999
 
 
+def test_orthographic_cameras_see_a_plan(scene):
+    # Straight down on a floor at 0 and a tetrahedron over it, whose apex is at (0, 1.5, 0).
+    plan = basrelief.Camera((0, 9, 0), (0, 0, 0), up=(0, 0, -1), orthographic=6)
+    renderer = basrelief.Renderer(scene)
+    frame = renderer.render(plan, (66, 66), ["object", "position", "polygon-depth"])
+    body = frame["object"] == 1
+    # Its base from (-1, 1) to (1, 1) and (0, -1) is of area 2, whatever its height.
+    assert abs(body.sum() * (6 / 66) ** 2 - 2) < 0.1
+    assert np.allclose(frame["polygon-depth"][~body], 9) and (frame["polygon-depth"][body] < 8.6).all()
+    places = (np.arange(66) + 0.5) / 11 - 3
+    assert np.allclose(frame["position"][..., 0], places, atol=1e-5)
+    assert np.allclose(frame["position"][..., 2], places[:, None], atol=1e-5)
+    # Nearer or farther, it is as large.
+    lifted = renderer.render(plan.replace(eye=(0, 20, 0)), (66, 66), "object")
+    assert np.array_equal(lifted["object"], frame["object"])
+
+
+def test_lenses_take_each_others_place():
+    plan = basrelief.Camera((0, 9, 0), (0, 0, 0), up=(0, 0, -1), orthographic=6)
+    assert plan.orthographic == 6 and plan.replace(near=2).orthographic == 6
+    assert plan.replace(orthographic=2).orthographic == 2
+    assert plan.replace(fov=30) == basrelief.Camera((0, 9, 0), (0, 0, 0), up=(0, 0, -1), fov=30)
+    posed = basrelief.Camera.from_intrinsics(60, 50, 32, 24, np.eye(4), near=0.5)
+    assert posed.replace(near=0.25).intrinsics == (60, 50, 32, 24) and posed.orthographic is None
+    assert posed.replace(fov=30).intrinsics is None
+    parallel = posed.replace(orthographic=3)
+    assert (parallel.intrinsics, parallel.orthographic) == (None, 3)
+    assert "orthographic=3" in repr(parallel) and "fov=60" in repr(parallel.replace(fov=60))
+
+
 def test_cameras_can_be_pickled(cameras):
     posed = basrelief.Camera.from_intrinsics(60, 50, 32, 24, np.eye(4), near=0.5)
-    for camera in [*cameras, posed]:
+    for camera in [*cameras, posed, posed.replace(orthographic=0.3)]:
         assert pickle.loads(pickle.dumps(camera)) == camera
-    assert posed.replace(near=0.25) != posed and posed.replace(fov=30).intrinsics is None
 
 
 @pytest.mark.parametrize("name", basrelief.FILTERS)

@@ -30,13 +30,15 @@ def floor(tmp_path, cobbles):
     return tmp_path
 
 
-def test_pictures_and_layers_of_files(floor):
+@pytest.mark.parametrize("lens", [{}, {"fov": 35}, {"orthographic": 3.5}])
+def test_pictures_and_layers_of_files(floor, lens):
     options = ["--eye", "1,2,5", "--target", "0,0,0", "-s", "120x80", "--relief-depth", "0.08"]
+    options += [word for name, value in lens.items() for word in (f"--{name}", value)]
     run("floor.obj", *options, "--lighting", "lit", "-o", "picture.png", cwd=floor)
     run("floor.obj", *options, *("--layer", "depth=depth.npy", "--layer", "normal=normal.npy"),
         *("--layer", "object=object.npy"), cwd=floor)
     scene = basrelief.load(floor / "floor.obj", relief_depth=0.08, aspect=1.5)
-    camera = scene.camera.replace(eye=(1, 2, 5), target=(0, 0, 0))
+    camera = scene.camera.replace(eye=(1, 2, 5), target=(0, 0, 0), **lens)
     frame = basrelief.Renderer(scene).render(camera, (120, 80), ["color", "depth", "normal", "object"])
     assert np.array_equal(np.asarray(Image.open(floor / "picture.png").convert("RGBA")), frame["color"])
     for name in ["depth", "normal", "object"]:

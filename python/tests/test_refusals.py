@@ -81,6 +81,16 @@ def test_cameras():
         basrelief.Camera((0, 0, 0), (0, 0, 0))
     with pytest.raises(ValueError, match="field of view"):
         basrelief.Camera((0, 0, 0), (0, 0, 1), fov=180)
+    plan = basrelief.Camera((0, 0, 0), (0, 0, 1), orthographic=2)
+    for bad in [0, -1, 1e-10, 1e10, float("nan"), float("inf")]:
+        for make in [lambda: basrelief.Camera((0, 0, 0), (0, 0, 1), orthographic=bad),
+                     lambda: plan.replace(orthographic=bad)]:
+            with pytest.raises(ValueError, match="orthographic picture's height"):
+                make()
+    with pytest.raises(ValueError, match="orthographic: takes the place of fov"):
+        basrelief.Camera((0, 0, 0), (0, 0, 1), fov=60, orthographic=2)
+    with pytest.raises(TypeError):
+        basrelief.Camera((0, 0, 0), (0, 0, 1), orthographic="high")
     with pytest.raises(ValueError, match="pose"):
         basrelief.Camera.from_intrinsics(1, 1, 1, 1, np.zeros((4, 4)))
     with pytest.raises(ValueError, match='convention: "gl" is not one of "opencv", "opengl"'):

@@ -30,8 +30,10 @@ class Camera:
         eye: _Vector,
         target: _Vector,
         up: _Vector | None = None,
-        fov: float = 60.0,
+        fov: float | None = None,
         near: float = 0.01,
+        *,
+        orthographic: float | None = None,
     ) -> None: ...
     @staticmethod
     def from_intrinsics(
@@ -55,6 +57,7 @@ class Camera:
         up: _Vector | None = None,
         fov: float | None = None,
         near: float | None = None,
+        orthographic: float | None = None,
     ) -> Camera: ...
     @property
     def eye(self) -> tuple[float, float, float]: ...
@@ -68,6 +71,8 @@ class Camera:
     def near(self) -> float: ...
     @property
     def intrinsics(self) -> tuple[float, float, float, float] | None: ...
+    @property
+    def orthographic(self) -> float | None: ...
 
 @final
 class Sun:
