@@ -133,9 +133,13 @@ fn on_several_levels(surface: &Surface, &[u, v, size]: &[PixelLanes; 3]) -> [Pix
         let at = |index: i32| lanes(levels.simd_eq(i32x8::splat(index)));
         let is_fine = at(index as i32);
         let is_coarse = at(index as i32 - 1) & blend.simd_gt(PixelLanes::ZERO);
-        // Look all lanes up on a level that any of them is on, and keep those.
-        if (is_fine | is_coarse).any() {
-            let found = Spot::new(level.texels_per_repeat(), [u, v]).color(level.rows(false));
+        let is_on = is_fine | is_coarse;
+        // Look all lanes up on a level that any of them is on, and keep those. The others go where
+        // the first of those is, so that they read no texels that are not needed.
+        if is_on.any() {
+            let first = is_on.to_bitmask().trailing_zeros() as usize;
+            let place = [u, v].map(|c| is_on.select(c, PixelLanes::splat(c.as_array()[first])));
+            let found = Spot::new(level.texels_per_repeat(), place).color(level.rows(false));
             fine = [0, 1, 2].map(|c| is_fine.select(found[c], fine[c]));
             coarse = [0, 1, 2].map(|c| is_coarse.select(found[c], coarse[c]));
         }

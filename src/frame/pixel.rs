@@ -51,6 +51,8 @@ impl Pixel for [u8; 4] {
         for (four, linear) in fours.iter_mut().zip(from) {
             if linear.iter().all(|pixel| pixel[3] == 1.0) {
                 four.as_flattened_mut().copy_from_slice(&srgb8_of_four(linear));
+            } else if linear.iter().all(|pixel| pixel[3] == 0.0) {
+                *four = [[0; 4]; 4];
             } else {
                 *four = linear.map(rgba8);
             }

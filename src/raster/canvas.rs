@@ -33,22 +33,25 @@ impl Canvas {
     /// pixels took part.
     #[inline]
     pub(super) fn add(&mut self, pair: &[SeenQuad], share: f32, colors: &[PixelLanes; 3]) -> u64 {
-        let [r, g, b] = colors.each_ref().map(PixelLanes::as_array);
-        let mut num = 0;
-        for (i, quad) in pair.iter().enumerate() {
+        let of_quad = |i: usize| pair.get(i).map_or(0, |quad| u32::from_le_bytes(quad.coverage));
+        let coverage = (u64::from(of_quad(0)) | u64::from(of_quad(1)) << 32).to_le_bytes();
+        let shares = PixelLanes::new(coverage.map(f32::from)) * share;
+        // Pixels without a sample add 0, which changes no sum: no branch to guess wrong. What their
+        // lanes hold may be anything, and is not multiplied with 0.
+        let is_covered = shares.simd_gt(PixelLanes::ZERO);
+        let [r, g, b] = colors.map(|lanes| is_covered.select(lanes * shares, PixelLanes::ZERO));
+        for (quad, added) in pair.iter().zip(quads_by_pixel([r, g, b, shares])) {
             let [x, y] = quad.origin.map(usize::from);
-            for lane in (0..4).filter(|lane| quad.coverage[*lane] > 0) {
-                let pixel = &mut self.pixels[(y + lane / 2) * self.stride + x + lane % 2];
-                let share = f32::from(quad.coverage[lane]) * share;
+            // One slice from the quad's first pixel to its last holds both rows.
+            let rows = &mut self.pixels[y * self.stride + x..][..self.stride + 2];
+            for (lane, added) in added.iter().enumerate() {
                 // Each triangle adds in the list's order, which is the same for every tiling: so
                 // are the sums.
-                let color = [r, g, b].map(|lanes| lanes[4 * i + lane] * share);
-                (0..3).for_each(|c| pixel[c] += color[c]);
-                pixel[3] += share;
-                num += 1;
+                let pixel = &mut rows[lane / 2 * self.stride + lane % 2];
+                (0..4).for_each(|c| pixel[c] += added[c]);
             }
         }
-        num
+        u64::from(is_covered.to_bitmask().count_ones())
     }
 
     /// Sets the pixels of one or two quads of which one triangle covers every sample; gives how

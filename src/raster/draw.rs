@@ -197,8 +197,10 @@ impl Painter<'_> {
         }
         let pixels_shaded = self.shade_quads(&rect, scratch, shade);
         let shaded = (self.clock)();
-        if !is_full {
-            scratch.canvas.add_background(self.background());
+        let background = self.background();
+        // Nothing is added where pixels are transparent.
+        if !is_full && background != [0.0; 4] {
+            scratch.canvas.add_background(background);
         }
         scratch.canvas.develop(development);
         scratch.canvas.copy_to(rows);
