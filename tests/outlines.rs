@@ -5,7 +5,7 @@ mod common;
 mod displaced;
 
 use basrelief::invariants::outlines_hold;
-use basrelief::relief::{HeightField, ReliefPlace, march};
+use basrelief::relief::{HeightField, MOST_STEPS, ReliefPlace, march};
 use basrelief::shell::{Met, Shell, ViewRay, Width};
 use basrelief::simd::PixelLanes;
 use basrelief::texture::{HeightImage, Surface, SurfaceMaps, Wrap};
@@ -213,8 +213,10 @@ fn straight_pieces_hit_what_the_march_hits() {
                     depth,
                 };
                 // In two pieces, as prisms cut rays.
-                let first = field.first_hit(&at(0.0), &at(0.3)).map(|part| part * 0.3);
-                let second = || field.first_hit(&at(0.3), &at(1.0)).map(|part| 0.3 + part * 0.7);
+                let mut steps_left = MOST_STEPS;
+                let mut hit = |from, to| field.first_hit(&at(from), &at(to), &mut steps_left);
+                let first = hit(0.0, 0.3).map(|part| part * 0.3);
+                let second = || hit(0.3, 1.0).map(|part| 0.3 + part * 0.7);
                 let found = first.or_else(second).unwrap_or(1.0);
                 assert!(
                     (found - f64::from(expected)).abs() < 2e-4,
@@ -262,6 +264,47 @@ fn rays_rise_from_a_ball_without_relief_to_meet() {
         }
     }
     assert!(num_hits > 500 && num_passed > 10, "{num_hits} hits, {num_passed} passed");
+}
+
+/// Texture coordinates that run far make every piece of a ray long: all together are bounded, not
+/// each.
+#[test]
+fn a_ray_takes_a_bounded_number_of_steps_over_all_its_triangles() {
+    const REPEATS: f32 = 200_000.0;
+    let ball = sphere([64, 32]);
+    let tex_coords = ball.tex_coords.iter().map(|place| *place * REPEATS).collect();
+    let mesh = Mesh::new(ball.positions, tex_coords, ball.normals, ball.triangles);
+    let low = HeightImage::from_fn(4, 4, |_, _| 0.0);
+    let maps = SurfaceMaps { height: Some(low), ..SurfaceMaps::default() };
+    let field = HeightField::new(&Surface::new(maps).expect("valid maps"));
+    // As deep in the world as a tenth with the ball's own coordinates.
+    let shell = Shell::new(&mesh, 0.1 * REPEATS);
+    let eye = DVec3::new(0.0, 0.0, 4.0);
+    let mut num_bounded = 0;
+    for (i, triangle) in mesh.triangles.iter().enumerate() {
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize].as_dvec3());
+        let middle = (a + b + c) / 3.0;
+        // Seen from the front, and not at a pole.
+        if (b - a).cross(c - a).dot(eye - middle) <= 0.0 || middle.y.abs() > 0.5 {
+            continue;
+        }
+        let ray = ViewRay { from: eye, direction: middle - eye };
+        let follow = |most: u32| {
+            let mut steps_left = most;
+            let met = shell.follow_within(&mesh, &field, i as u32, (&ray, &mut steps_left));
+            (met, most - steps_left)
+        };
+        let ((_, num_of_all), (met, num_steps)) = (follow(u32::MAX), follow(MOST_STEPS));
+        assert_eq!(num_steps, num_of_all.min(MOST_STEPS), "triangle {i}: {met:?}");
+        if num_steps < num_of_all {
+            let Met::Relief(hit) = met else { panic!("triangle {i} ends with {met:?}") };
+            num_bounded += usize::from(hit.triangle != i as u32);
+            // Without a number it is that.
+            let same = shell.follow(&mesh, &field, i as u32, &ray);
+            assert!(matches!(same, Met::Relief(same) if same.place == hit.place), "triangle {i}");
+        }
+    }
+    assert!(num_bounded > 10, "{num_bounded} rays end in other triangles");
 }
 
 /// Where a probe says that all rays around it hit, they do.

@@ -29,5 +29,5 @@ pub use height_cells::{CellRays, HeightCells};
 pub use height_field::HeightField;
 pub use level_loss::LevelLoss;
 pub use march::{ViewRays, march, march_all};
-pub use segment::ReliefPlace;
+pub use segment::{MOST_STEPS, ReliefPlace};
 pub use shadow::{LitParts, RowScratch};

@@ -6,9 +6,10 @@
 use super::height_field::HeightField;
 use crate::texture::FULL_F32;
 
-/// Most nodes of a piece: hostile texture coordinates make pieces of any length. Such a piece then
-/// ends where it is.
-const MAX_STEPS: u32 = 1 << 14;
+/// Most steps of a path, over all its pieces: hostile texture coordinates make pieces of any length,
+/// and a ray has thousands of them. The most on a torus of four million triangles under a texture of
+/// 2048 x 2048, seen flat, are 2364.
+pub const MOST_STEPS: u32 = 1 << 14;
 
 /// A place in the relief of a texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +57,15 @@ impl HeightField {
 
     /// How far, 0 to 1, it is on the straight way between two places to where relief is first met;
     /// 0 where the first lies in the relief already.
-    pub fn first_hit(&self, from: &ReliefPlace, to: &ReliefPlace) -> Option<f64> {
+    ///
+    /// Each node that is looked at takes one of the steps that the whole path has left, and each piece
+    /// at least one. When none is left the path ends where it is, as if it hit relief there.
+    pub fn first_hit(
+        &self,
+        from: &ReliefPlace,
+        to: &ReliefPlace,
+        steps_left: &mut u32,
+    ) -> Option<f64> {
         let cells = |place: &ReliefPlace, i: usize| {
             place.uv[i] * f64::from(self.texels_per_repeat[i]) - 0.5
         };
@@ -72,12 +81,12 @@ impl HeightField {
         let depth = [from.depth, to.depth - from.depth];
         let piece = Piece { field: self, start, step, inverse, depth };
         let is_finite = step.iter().chain(&depth).all(|c| c.is_finite());
-        if is_finite { piece.first_hit() } else { Some(0.0) }
+        if is_finite { piece.first_hit(steps_left) } else { Some(0.0) }
     }
 }
 
 impl Piece<'_> {
-    fn first_hit(&self) -> Option<f64> {
+    fn first_hit(&self, steps_left: &mut u32) -> Option<f64> {
         let field = self.field;
         let longest = self.step[0].abs().max(self.step[1].abs());
         let top = field.first_level(longest as f32);
@@ -86,7 +95,8 @@ impl Piece<'_> {
             Axis { cell, stored: field.fold(i, cell) }
         });
         let (mut at, mut level) = (0.0_f64, top);
-        for _ in 0..MAX_STEPS {
+        while *steps_left > 0 {
+            *steps_left -= 1;
             // Beyond the edges of a clamped pattern there are cells alone.
             if field.is_clamped
                 && axes.iter().any(|axis| axis.stored < 0 || axis.stored != axis.cell)

@@ -7,7 +7,7 @@
 
 use super::neighbors::NONE;
 use super::prisms::Shell;
-use crate::relief::{HeightField, ReliefPlace};
+use crate::relief::{HeightField, MOST_STEPS, ReliefPlace};
 use crate::scene::Mesh;
 use glam::{DVec2, DVec3};
 
@@ -79,6 +79,8 @@ struct Walk<'a> {
     axes: [DVec3; 2],
     /// 1 where the mesh is seen from the front, -1 where its back shows relief on the other side.
     side: f64,
+    /// Of the whole ray, over all prisms: see [`HeightField::first_hit`].
+    steps_left: &'a mut u32,
 }
 
 /// A triangle with its prism, seen along the ray.
@@ -92,7 +94,19 @@ struct Prism {
 impl Shell {
     /// What a ray meets that enters the relief of the mesh through a triangle, or beside it.
     pub fn follow(&self, mesh: &Mesh, field: &HeightField, triangle: u32, ray: &ViewRay) -> Met {
-        self.walk::<false>(mesh, field, triangle, (ray, Width::default()))
+        self.follow_within(mesh, field, triangle, (ray, &mut { MOST_STEPS }))
+    }
+
+    /// The same of a ray that has so many steps left, and takes its own from them: where none is
+    /// left, it ends.
+    pub fn follow_within(
+        &self,
+        mesh: &Mesh,
+        field: &HeightField,
+        triangle: u32,
+        (ray, steps_left): (&ViewRay, &mut u32),
+    ) -> Met {
+        self.walk::<false>(mesh, field, triangle, (ray, Width::default(), steps_left))
     }
 
     /// The same where a place within the relief, not before the hit, will do: a few heights are
@@ -107,7 +121,7 @@ impl Shell {
         triangle: u32,
         (ray, width): (&ViewRay, Width),
     ) -> Met {
-        self.walk::<true>(mesh, field, triangle, (ray, width))
+        self.walk::<true>(mesh, field, triangle, (ray, width, &mut { MOST_STEPS }))
     }
 
     fn walk<const PROBES: bool>(
@@ -115,12 +129,13 @@ impl Shell {
         mesh: &Mesh,
         field: &HeightField,
         triangle: u32,
-        (ray, width): (&ViewRay, Width),
+        (ray, width, steps_left): (&ViewRay, Width, &mut u32),
     ) -> Met {
         let along = ray.direction.normalize_or(DVec3::Z);
         let (x, y) = along.any_orthonormal_pair();
         // Turned so that what is seen from the front is counter-clockwise.
-        let mut walk = Walk { shell: self, mesh, field, ray, width, axes: [y, x], side: 1.0 };
+        let (axes, side) = ([y, x], 1.0);
+        let mut walk = Walk { shell: self, mesh, field, ray, width, axes, side, steps_left };
         let prism = walk.prism(triangle);
         if prism.area(0.0) < 0.0 {
             walk.side = -1.0;
@@ -134,13 +149,16 @@ impl Shell {
 }
 
 impl Walk<'_> {
-    fn run<const PROBES: bool>(&self, triangle: u32) -> Met {
+    fn run<const PROBES: bool>(&mut self, triangle: u32) -> Met {
         let Some(mut prism) = self.entry(triangle) else {
             return Met::Nothing(self.distance_of(triangle));
         };
         let mut from = self.point(&prism, prism.shares(0.0), 0.0);
         let (mut entry, mut goes_down, mut is_beyond) = (3, true, false);
         for _ in 0..MOST_TRIANGLES {
+            if *self.steps_left == 0 {
+                break;
+            }
             let t = from.place.depth;
             let way = if goes_down { 1.0 } else { -1.0 };
             // Find the side by which the ray leaves the prism, unless that is above or below.
@@ -223,7 +241,7 @@ impl Walk<'_> {
     /// Goes on within a prism to a depth, where the ray leaves by an edge or, for 3, by none; gives
     /// the hit, if there is one.
     fn pieces<const PROBES: bool>(
-        &self,
+        &mut self,
         prism: &Prism,
         from: &mut Point,
         (end, edge): (f64, usize),
@@ -243,12 +261,15 @@ impl Walk<'_> {
                 return Some(self.hit(prism, from));
             }
             let to = self.point(prism, shares, depth);
-            let part = match PROBES {
-                true => [0.5, 1.0].into_iter().find(|part| {
+            let part = if PROBES {
+                // No more than the ray itself takes: where a probe ends for that, the ray does.
+                *self.steps_left = self.steps_left.saturating_sub(1);
+                [0.5, 1.0].into_iter().find(|part| {
                     let place = from.place.toward(&to.place, *part);
                     self.is_within(prism, &Point { shares: to.shares, place })
-                }),
-                false => self.field.first_hit(&from.place, &to.place),
+                })
+            } else {
+                self.field.first_hit(&from.place, &to.place, self.steps_left)
             };
             if let Some(part) = part {
                 let shares =
