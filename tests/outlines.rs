@@ -110,6 +110,40 @@ fn outlines_of_smooth_meshes_are_lit_from_the_side_that_is_seen() {
     }
 }
 
+/// So do the layers: what of the ball is seen of its front faces outwards, though it leans away.
+#[test]
+fn layers_of_normals_face_the_side_that_is_seen() {
+    let maps = SurfaceMaps { relief_depth: 0.0, ..SurfaceMaps::default() };
+    let mut scene = scene(sphere([8, 16]), maps, 2.6);
+    let mut count = |eye: Vec3, side: f32| {
+        scene.camera.eye = eye;
+        let mut renderer =
+            Renderer::new(scene.clone(), settings(Filter::Nearest)).expect("a valid scene");
+        let all = [Layer::PolygonNormal, Layer::Normal, Layer::PolygonPosition, Layer::Object];
+        let layers = renderer.render_layers(&all);
+        let vectors = |layer: Layer| layers.floats(layer).chunks(3).map(Vec3::from_slice);
+        let (mut num, mut num_away) = (0, 0);
+        let normals = vectors(Layer::PolygonNormal).zip(vectors(Layer::Normal));
+        for ((place, normals), object) in
+            vectors(Layer::PolygonPosition).zip(normals).zip(layers.ids(Layer::Object))
+        {
+            if *object == u32::MAX {
+                continue;
+            }
+            num += 1;
+            num_away += u32::from(normals.0.dot(place - eye) > 0.0);
+            assert!(normals.0.dot(place.normalize()) * side > 0.9, "{normals:?} at {place}");
+            assert!(normals.1.abs_diff_eq(normals.0, 1e-6), "{normals:?} without a map");
+        }
+        [num, num_away]
+    };
+    let [num, num_away] = count(Vec3::new(1.8, 0.0, -1.9), 1.0);
+    assert!(num > 1000 && num_away > 10, "{num_away} of {num} pixels lean away");
+    // From within, its back.
+    let [num, _] = count(Vec3::new(0.1, 0.0, 0.1), -1.0);
+    assert!(num > 5000, "{num} pixels from within");
+}
+
 /// Where the ball's lower half ends: pixels of it beside others.
 fn lower_edge(names: &[u32], [width, height]: [usize; 2]) -> Vec<[usize; 2]> {
     let is_ball = |x: usize, y: usize| names[y * width + x] == 1;

@@ -4,7 +4,7 @@ use super::layer::Layer;
 use super::place::write_place;
 use super::values::{Band, ValuesMut};
 use crate::geometry::Projection;
-use crate::light::unit_axes;
+use crate::light::SurfacePoint;
 use crate::raster::{CenterTile, LitLanes, QuadBlock, QuadPair};
 use crate::relief::{HeightField, ViewRays, displacement_over, finite, march_all, stretch};
 use crate::render::{Outlines, PreparedScene};
@@ -35,7 +35,6 @@ struct PairHits {
 
 /// One pixel of a pair.
 struct Pixel<'a> {
-    place: [i32; 2],
     /// As in [`PairHits`].
     distance: f32,
     polygon_uv: [f32; 2],
@@ -92,7 +91,6 @@ impl Hits<'_> {
             let Some(at) = band.index(place) else { continue };
             let of = |lanes: &PixelLanes| lanes.as_array()[lane];
             let pixel = Pixel {
-                place,
                 distance: of(&hits.distance),
                 polygon_uv: pair.uv.each_ref().map(|lanes| of(&finite(*lanes))),
                 uv: hits.uv.each_ref().map(of),
@@ -120,10 +118,10 @@ impl Hits<'_> {
             Layer::PolygonUv => out[..2].copy_from_slice(&pixel.polygon_uv),
             Layer::Albedo => out[..3].copy_from_slice(&albedo(material, pixel.uv).to_array()),
             Layer::PolygonNormal => {
-                out[..3].copy_from_slice(&self.normal(pixel, Texel::UP).to_array());
+                out[..3].copy_from_slice(&normal(pixel, Texel::UP).to_array());
             }
             Layer::Normal | Layer::CameraNormal => {
-                let normal = self.normal(pixel, texel(material, pixel.uv).1);
+                let normal = normal(pixel, texel(material, pixel.uv).1);
                 let is_world = layer == Layer::Normal;
                 let normal = if is_world { normal } else { self.projection.along_axes(normal) };
                 out[..3].copy_from_slice(&normal.to_array());
@@ -131,19 +129,20 @@ impl Hits<'_> {
             _ => {}
         }
     }
+}
 
-    /// A normal of the texture's frame in the world, on the side that the eye sees.
-    fn normal(&self, pixel: &Pixel, [x, y, z]: [f32; 3]) -> Vec3 {
-        let Some(lit) = pixel.lit else { return Vec3::ZERO };
-        let at =
-            |lanes: &[PixelLanes; 3]| Vec3::from(lanes.map(|lanes| lanes.as_array()[pixel.lane]));
-        let normal = at(&lit.normal).normalize_or(Vec3::Z);
-        let ray = self.projection.ray(pixel.place.map(|c| f64::from(c) + 0.5)).as_vec3();
-        let is_away = self.projection.along_axes(normal).dot(ray) > 0.0;
-        let normal = if is_away { -normal } else { normal };
-        let [u, v, _] = unit_axes([at(&lit.tangent_u), at(&lit.tangent_v)], normal);
-        (u * x + v * y + normal * z).normalize_or(normal)
-    }
+/// A normal of the texture's frame in the world, on the side of the polygon that the eye sees.
+fn normal(pixel: &Pixel, [x, y, z]: [f32; 3]) -> Vec3 {
+    let Some(lit) = pixel.lit else { return Vec3::ZERO };
+    let at = |lanes: &[PixelLanes; 3]| Vec3::from(lanes.map(|lanes| lanes.as_array()[pixel.lane]));
+    let point = SurfacePoint {
+        position: at(&lit.position),
+        normal: at(&lit.normal),
+        tangents: [at(&lit.tangent_u), at(&lit.tangent_v)],
+        is_back: lit.is_back.to_bitmask() >> pixel.lane & 1 == 1,
+    };
+    let [u, v, normal] = point.axes();
+    (u * x + v * y + normal * z).normalize_or(normal)
 }
 
 /// Traces the rays of a block's pairs to the relief.
