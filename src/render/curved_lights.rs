@@ -17,11 +17,18 @@ pub(super) struct CurvedLights {
     relief_depth: f32,
     discs: Vec<Disc>,
     places: Vec<Vec3>,
-    skies: Vec<[LinearSky; 8]>,
     suns: Vec<CurvedSun>,
+    points: Vec<Vec3>,
+    /// On the pairs.
+    shone: Shone,
+}
+
+/// How lights shine on vectors of places: see [`Curved`].
+#[derive(Debug, Default)]
+pub(super) struct Shone {
+    skies: Vec<[LinearSky; 8]>,
     frames: Vec<FrameLanes>,
     slants: Vec<Slant>,
-    points: Vec<Vec3>,
     ways: Vec<Ways>,
 }
 
@@ -58,52 +65,46 @@ impl CurvedLights {
             discs: discs.iter().map(|(disc, _)| *disc).collect(),
             points: places.iter().map(|(_, intensity)| *intensity).collect(),
             places: places.iter().map(|(place, _)| *place).collect(),
-            skies: Vec::new(),
-            frames: Vec::new(),
-            slants: Vec::new(),
-            ways: Vec::new(),
+            shone: Shone::default(),
         };
+        let mut shone = Shone::default();
         for pair in pairs.map(|index| block.pair(index)) {
             let Some(lit) = pair.lit() else { continue };
-            let frame = all.add(&lit, || displacement(&pair.view(), relief_depth));
+            let frame = all.shine_on(&lit, || displacement(&pair.view(), relief_depth), &mut shone);
             if swept.has_sky {
                 let sky = skies.of_pair((scene, occluders), &pair, &frame);
-                all.skies.push(sky);
+                shone.skies.push(sky);
             }
         }
+        all.shone = shone;
         all
     }
 
     /// Adds how they shine on places, and how far what is seen there moves down to the deepest relief.
-    fn add(&mut self, lit: &LitLanes, displacement: impl Fn() -> [PixelLanes; 2]) -> FrameLanes {
+    fn shine_on(
+        &self,
+        lit: &LitLanes,
+        displacement: impl Fn() -> [PixelLanes; 2],
+        shone: &mut Shone,
+    ) -> FrameLanes {
         let LitLanes { position, normal, tangent_u, tangent_v, is_back } = lit;
         let frame = FrameLanes::new(normal, &[*tangent_u, *tangent_v], *is_back);
-        self.slants.extend(self.discs.iter().map(|disc| frame.slant(disc.to_middle)));
+        shone.slants.extend(self.discs.iter().map(|disc| frame.slant(disc.to_middle)));
         if !self.places.is_empty() {
             let ray = (displacement(), self.relief_depth);
-            self.ways.extend(self.places.iter().map(|at| frame.ways(position, *at, ray)));
+            shone.ways.extend(self.places.iter().map(|at| frame.ways(position, *at, ray)));
         }
-        self.frames.push(frame);
+        shone.frames.push(frame);
         frame
     }
 
-    /// The same lights on the polygons above hits of a pixel's rays, under the sky of the pixel.
-    pub(super) fn at_hits(&self, lit: &LitLanes, [vector, lane]: [usize; 2]) -> Self {
-        let skies = self.skies.get(vector).map(|skies| [skies[lane]; 8]);
-        let mut all = Self {
-            relief_depth: self.relief_depth,
-            suns: self.suns.clone(),
-            discs: self.discs.clone(),
-            points: self.points.clone(),
-            places: self.places.clone(),
-            skies: skies.into_iter().collect(),
-            frames: Vec::new(),
-            slants: Vec::new(),
-            ways: Vec::new(),
-        };
+    /// How they shine on the polygons above hits of a pixel's rays, under the sky of the pixel.
+    pub(super) fn at_hits(&self, lit: &LitLanes, [vector, lane]: [usize; 2]) -> Shone {
+        let skies = self.shone.skies.get(vector).map(|skies| [skies[lane]; 8]);
+        let mut shone = Shone { skies: skies.into_iter().collect(), ..Shone::default() };
         // A hit is straight below its polygon.
-        all.add(lit, || [PixelLanes::ZERO; 2]);
-        all
+        self.shine_on(lit, || [PixelLanes::ZERO; 2], &mut shone);
+        shone
     }
 
     /// Takes from the sky what a texture of occlusion says of each pixel.
@@ -111,7 +112,7 @@ impl CurvedLights {
         if ground.material.maps.occlusion.is_none() {
             return;
         }
-        for (skies, pixels) in self.skies.iter_mut().zip(pixels) {
+        for (skies, pixels) in self.shone.skies.iter_mut().zip(pixels) {
             for lane in pixels.covered() {
                 let share = ground.finish(&pixels.lane(lane)).occlusion;
                 skies[lane] = LinearSky::blend([(skies[lane], share)].into_iter());
@@ -119,9 +120,14 @@ impl CurvedLights {
         }
     }
 
-    /// All of them.
+    /// All of them on the pairs.
     pub(super) fn all(&self) -> Curved<'_> {
-        let Self { skies, suns, frames, slants, points, ways, .. } = self;
+        self.of(&self.shone)
+    }
+
+    /// All of them on other places.
+    pub(super) fn of<'a>(&'a self, shone: &'a Shone) -> Curved<'a> {
+        let (Self { suns, points, .. }, Shone { skies, frames, slants, ways }) = (self, shone);
         Curved { suns, skies, frames, slants, points, ways }
     }
 }

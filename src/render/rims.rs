@@ -105,19 +105,17 @@ impl<'a> Rims<'a> {
             let places = ([dx + x, dy + y], num);
             let Some(hits) = self.ground.hits(self.outlines, planes, places) else { continue };
             let lights = lights.and_then(|(lights, pixel)| {
-                Some((
-                    lights.at_hits(&self.lit(planes.triangle[0], &hits), pixel),
-                    prepared.horizons()?,
-                ))
+                let shone = lights.at_hits(&self.lit(planes.triangle[0], &hits), pixel);
+                Some((lights, shone, prepared.horizons()?))
             });
             for (lane, hit) in hits.iter().enumerate() {
                 let Some(hit) = hit else { continue };
                 let place = hit.place.uv.map(|c| c as f32);
                 let mut color =
                     Vec3::from(points::trilinear(prepared.surface(), place, size).color);
-                if let Some((lights, horizons)) = &lights {
-                    let at = (place, hit.place.depth as f32);
-                    let light = light_at((&lights.all(), lane), (horizons, prepared.surface()), at);
+                if let Some((lights, shone, horizons)) = &lights {
+                    let (at, curved) = ((place, hit.place.depth as f32), lights.of(shone));
+                    let light = light_at((&curved, lane), (horizons, prepared.surface()), at);
                     color *= Vec3::from(light);
                 }
                 (sum, num_hits) = (sum + color, num_hits + 1.0);
