@@ -3,7 +3,7 @@
 use basrelief::Frame;
 use std::fs;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
@@ -92,4 +92,8 @@ pub(crate) fn text(bytes: &[u8]) -> String {
 
 pub(crate) fn json(bytes: &[u8]) -> serde_json::Value {
     serde_json::from_slice(bytes).unwrap()
+}
+
+pub(crate) fn size_of_image(path: &Path) -> (u32, u32) {
+    image::image_dimensions(path).unwrap()
 }

@@ -4,10 +4,13 @@ mod bench;
 mod cameras;
 mod chromium;
 mod command_line;
+mod compare;
 mod folder;
 mod frames;
 mod golden;
 mod layers;
+mod pictures;
+mod refusals;
 mod scene_file;
 mod see;
 mod study;
@@ -15,5 +18,7 @@ mod study;
 mod threads;
 #[cfg(feature = "viewer")]
 mod view;
+#[cfg(unix)]
+mod whole_files;
 #[cfg(feature = "viewer")]
 mod xvfb;
