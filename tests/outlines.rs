@@ -16,7 +16,7 @@ use common::{Random, cobbles, floor_scene, rough_surface};
 use displaced::{
     ball_in_stones, decibels, depths_within, displaced, overlap, scene, show, sphere, torus,
 };
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// As small as a picture may be and a stone still have some pixels.
 fn settings(filter: Filter) -> Settings {
@@ -144,6 +144,27 @@ fn layers_of_normals_face_the_side_that_is_seen() {
     assert!(num > 5000, "{num} pixels from within");
 }
 
+/// As those of models do: their charts lie anywhere in the texture.
+#[test]
+fn textures_may_go_on_elsewhere_across_an_edge() {
+    let whole = torus([24, 12]);
+    // Each third of a quarter of the way around is a chart.
+    let chart = |triangle: usize| Vec2::new(0.37, 0.21) * (triangle / 2 % 24 / 2) as f32;
+    let corners: Vec<_> = whole.triangles.iter().flatten().map(|i| *i as usize).collect();
+    let places = corners.iter().enumerate();
+    let mesh = Mesh::new(
+        corners.iter().map(|i| whole.positions[*i]).collect(),
+        places.map(|(corner, i)| whole.tex_coords[*i] + chart(corner / 3)).collect(),
+        corners.iter().map(|i| whole.normals[*i]).collect(),
+        (0..corners.len() as u32 / 3).map(|i| [0, 1, 2].map(|corner| 3 * i + corner)).collect(),
+    );
+    let scene = scene(mesh, stones(), 3.4);
+    let truth = draw(&scene, settings(Filter::Truth(Rays { samples: 128 })));
+    let found = common::decibels(&draw(&scene, settings(Filter::default())), &truth, 1000.0);
+    println!("{found:.2} dB");
+    assert!(found > 42.0, "{found} dB");
+}
+
 /// Where the ball's lower half ends: pixels of it beside others.
 fn lower_edge(names: &[u32], [width, height]: [usize; 2]) -> Vec<[usize; 2]> {
     let is_ball = |x: usize, y: usize| names[y * width + x] == 1;
@@ -172,7 +193,7 @@ fn a_ball_sinks_between_the_stones() {
     fine.meshes[0] = {
         let grid = displaced::grid([20, 20], |x, y| {
             let at = Vec3::new(x - 0.5, 0.0, 0.5 - y) * 6.0;
-            (at, Vec3::Y, glam::Vec2::new(at.x, -at.z) * 0.5)
+            (at, Vec3::Y, Vec2::new(at.x, -at.z) * 0.5)
         });
         Mesh { material: 0, ..grid }
     };

@@ -27,6 +27,7 @@ mod rims;
 mod shade;
 mod shadows;
 mod skies;
+mod strays;
 
 pub(crate) use ground::{pixel_center, surface_point};
 pub(crate) use outlines::Outlines;

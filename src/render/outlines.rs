@@ -4,7 +4,7 @@ use crate::geometry::{Plane, Projection, ScreenBasis};
 use crate::light::SurfacePoint;
 use crate::relief::HeightField;
 use crate::scene::{Eye, Mesh, Scene};
-use crate::shell::{Met, Passable, ReliefHit, Shell, ViewRay, Width};
+use crate::shell::{Course, Met, Passable, ReliefHit, Shell, ViewRay, Width};
 use crate::simd::{PixelLanes, set_bits};
 use glam::{DVec3, Vec3};
 
@@ -91,6 +91,13 @@ impl<'a> Outlines<'a> {
         let [mesh, triangle] = triangle;
         let Some((shell, field)) = self.reliefs[mesh as usize] else { return Met::Polygon };
         shell.follow(&self.scene.meshes[mesh as usize], field, triangle, &self.ray(place))
+    }
+
+    /// What a triangle tells of the course of the ray through a place of the screen.
+    pub(super) fn course(&self, [mesh, triangle]: [u32; 2], place: [f64; 2]) -> Course {
+        self.reliefs[mesh as usize].map_or(Course::Told, |(shell, _)| {
+            shell.course(&self.scene.meshes[mesh as usize], triangle, &self.ray(place))
+        })
     }
 
     fn ray(&self, place: [f64; 2]) -> ViewRay {

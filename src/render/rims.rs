@@ -12,6 +12,7 @@
 use super::curved_lights::CurvedLights;
 use super::ground::{Ground, in_lanes, pixel_center};
 use super::outlines::Outlines;
+use super::strays::strays;
 use crate::filter::{Filtered, SampleOffsets, Samples, light_at, points};
 use crate::footprint::{Footprint, Footprints};
 use crate::light::SurfacePoint;
@@ -41,14 +42,16 @@ impl<'a> Rims<'a> {
     pub(super) fn take_off(
         (outlines, ground): (&'a Outlines<'a>, &'a Ground<'a>),
         (block, pairs): (&'a QuadBlock<'a>, Range<usize>),
-        footprints: &mut [Footprints],
+        (footprints, bows): (&mut [Footprints], &[[PixelLanes; 2]]),
     ) -> Self {
         let relief_depth = ground.prepared.surface().relief_depth();
         let mut pixels = Vec::new();
-        for (i, (index, footprints)) in pairs.zip(footprints).enumerate() {
+        for (i, ((index, footprints), bow)) in pairs.zip(footprints).zip(bows).enumerate() {
             let pair = block.pair(index);
-            let Some(bend) = pair.bend() else { continue };
-            let rim = footprints.covered & are_at_outline(&pair.view(), &bend, relief_depth);
+            let at_outline =
+                pair.bend().map_or(0, |bend| are_at_outline(&pair.view(), &bend, relief_depth));
+            let rim = footprints.covered & at_outline
+                | strays((outlines, ground), &pair, footprints, bow);
             if rim != 0 {
                 footprints.covered &= !rim;
                 pixels.push((i, rim));

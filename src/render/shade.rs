@@ -245,8 +245,10 @@ impl<'a> Shader<'a> {
             find_bows(field, (block, pairs.clone()), footprints, bows);
         }
         let outlines = self.outlines.filter(|_| !bows.is_empty() && !ground.asks_for_lights());
-        let rims = outlines
-            .map(|outlines| Rims::take_off((outlines, ground), (block, pairs.clone()), footprints));
+        let rims = outlines.map(|outlines| {
+            let pairs = (block, pairs.clone());
+            Rims::take_off((outlines, ground), pairs, (&mut *footprints, bows))
+        });
         let curved = curved_lights.as_ref().map(CurvedLights::all);
         let curved = curved.as_ref();
         let batch = Batch { pixels: footprints, lights, curved, bows, ..Batch::default() };

@@ -15,10 +15,13 @@
 //!            ---Q0---Q1-----Q2      It hits relief or leaves through a polygon: past the outline
 //! ```
 
+mod course;
 mod curvature;
 mod follow;
 mod neighbors;
+mod prism;
 mod prisms;
 
+pub use course::Course;
 pub use follow::{Met, ReliefHit, ViewRay, Width};
 pub use prisms::{Passable, Shell, is_seen_from_behind};

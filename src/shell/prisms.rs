@@ -1,6 +1,7 @@
 //! What is known of a mesh with relief before a ray comes.
 
-use super::{curvature, neighbors};
+use super::curvature::{self, Limits};
+use super::neighbors;
 use crate::scene::{Eye, Mesh};
 use glam::Vec3;
 
@@ -19,9 +20,8 @@ pub struct Shell {
     /// Across each of a triangle's edges, `[i, i + 1]` for edge `i`, the triangle times three plus
     /// its edge; or [`NONE`](neighbors::NONE).
     pub(super) neighbors: Vec<[u32; 3]>,
-    /// Of each triangle, seen from the front and from behind: the square of the cosine between
-    /// normal and ray below which a ray may pass the relief.
-    limits: Vec<[f32; 2]>,
+    /// Of each triangle, where rays through it may pass the relief.
+    pub(super) limits: Vec<Limits>,
     /// Of each triangle, how many pieces a ray within its prism is cut into.
     pub(super) num_pieces: Vec<u8>,
     is_curved: bool,
@@ -47,7 +47,7 @@ impl Shell {
         let offsets: Vec<_> = mesh.normals.iter().zip(&mesh.tangents).map(offset).collect();
         let neighbors = neighbors::find(mesh);
         let limits = curvature::limits(mesh, &offsets, &neighbors);
-        let is_curved = limits.iter().flatten().any(|limit| *limit > 0.0);
+        let is_curved = limits.iter().any(|limits| limits.squares != [0.0; 2]);
         let num_pieces = mesh.triangles.iter().map(|triangle| num_pieces(&offsets, triangle));
         let num_pieces = num_pieces.collect();
         Self { offsets, neighbors, limits, num_pieces, is_curved }
@@ -60,7 +60,7 @@ impl Shell {
 
     /// Where rays from the eye through a triangle may pass its relief, if they may anywhere.
     pub fn passable(&self, mesh: &Mesh, triangle: u32, eye: Eye) -> Option<Passable> {
-        let limits = self.limits[triangle as usize];
+        let limits = self.limits[triangle as usize].squares;
         if limits == [0.0; 2] {
             return None;
         }
