@@ -18,9 +18,9 @@ use crate::relief::SEEN_DEPTH;
 use crate::shell::{Course, Met, ReliefHit};
 use crate::simd::PixelLanes;
 
-/// How far from where it is looked for a ray may hit, in pixels or in texels, whichever is more. A cow
-/// of 5856 triangles in bricks has 36, 39 and 42 dB with 1, 0.5 and 0.25, and takes 2.6, 4.2 and 4.9
-/// times as long as without, for 29 dB.
+/// How far from where it is looked for a ray may hit, in pixels or in texels, whichever is more. A model
+/// of 5856 triangles in bricks, 1200x900, has 42 dB with 0.25, 39 with 0.5 and 36 with 1, for 4.9, 4.2
+/// and 2.6 times the time of sweeps alone, which have 29.
 const MOST_STRAY: f32 = 0.25;
 
 /// The rays of a quad, in pixels from its middle: one there, and where there may be breaks its corners.
