@@ -15,6 +15,7 @@ use basrelief::{
     Visible,
 };
 use common::{cobbles, floor_scene};
+use glam::{Vec2, Vec3};
 use std::sync::OnceLock;
 
 fn settings(filter: Filter) -> Settings {
@@ -195,9 +196,8 @@ fn mean_square<'a>(values: impl IntoIterator<Item = &'a f32>) -> f64 {
 fn walk(renderer: &mut Renderer, num: usize) -> impl Iterator<Item = Frame> {
     let camera = renderer.scene().camera;
     (0..num).map(move |i| {
-        let step =
-            glam::Vec3::new(camera.target.x - camera.eye.x, 0.0, camera.target.z - camera.eye.z)
-                .normalize();
+        let step = Vec3::new(camera.target.x - camera.eye.x, 0.0, camera.target.z - camera.eye.z)
+            .normalize();
         let moved = step * (0.01 * i as f32);
         renderer
             .set_camera(Camera { eye: camera.eye + moved, target: camera.target + moved, ..camera })
@@ -285,4 +285,31 @@ fn no_pixel_of_the_far_field_is_black() {
         .expect("a camera");
     let frame = renderer.render();
     assert!(frame.pixels.iter().all(|[r, g, b, _]| r + g + b > 0.01));
+}
+
+/// Smooth tangents that are turned from the polygon's lay ellipses aslant on the lines of a sweep: bins
+/// that went by their height alone left nothing of them, and pixels were of any colour.
+#[test]
+fn ellipses_that_stand_aslant_keep_their_colour() {
+    let mut scene = floor_scene(Surface::new(cobbles(64, 4)).expect("valid maps"), 0.25);
+    scene.camera.eye.y = 1.0;
+    for turn in [0.4, -0.6] {
+        let turned = Vec2::new(1.0, turn).normalize();
+        for tangents in &mut scene.meshes[0].tangents {
+            *tangents = tangents.map(|tangent| {
+                let across = Vec2::new(tangent.x, tangent.z).length() * turned;
+                if tangent.x.abs() > tangent.z.abs() {
+                    Vec3::new(across.x, 0.0, across.y)
+                } else {
+                    Vec3::new(across.y, 0.0, -across.x)
+                }
+            });
+        }
+        let draw = |filter: Filter| {
+            Renderer::new(scene.clone(), settings(filter)).expect("a valid scene").render()
+        };
+        let found = common::decibels(&draw(sweeps()), &draw(truth(64)), 1000.0);
+        println!("{found:.2} dB");
+        assert!(found > 49.0, "{found} dB with tangents turned by {turn}");
+    }
 }

@@ -34,8 +34,13 @@ pub(super) struct Plan<'a> {
     pub(super) step: f32,
 }
 
+/// How many times as long as it is along a line an ellipse may be taken for that stands aslant on the
+/// lines, as its height says: bins must be shorter than it is along a line, or nothing of it is left
+/// when their blur is taken off.
+const MOST_SLANT: f32 = 1.6;
+
 /// The extent of a patch: least and greatest `xi` and `q` of its ellipses, the greatest width and
-/// the least height.
+/// the least height, as far as bins go by it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
     pub(super) xi: [f32; 2],
@@ -65,11 +70,11 @@ impl Extent {
             area: 0.0,
         };
         for pixel in pixels {
-            let PixelOnLines { xi, q, half_width, half_height, .. } = *pixel;
+            let PixelOnLines { xi, q, along, half_width, half_height, .. } = *pixel;
             extent.xi = [extent.xi[0].min(xi - half_width), extent.xi[1].max(xi + half_width)];
             extent.q = [extent.q[0].min(q - half_height), extent.q[1].max(q + half_height)];
             extent.half_width = extent.half_width.max(half_width);
-            extent.half_height = extent.half_height.min(half_height);
+            extent.half_height = extent.half_height.min(half_height).min(MOST_SLANT / along);
             // By itself the pixel would be walked over its ellipse and down to the deepest relief.
             extent.area += 2.0 * half_width * (2.0 * half_height + depth);
         }
