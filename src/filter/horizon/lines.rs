@@ -174,7 +174,9 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
             let scale = (q * spread + 1.0)
                 .fast_max(LineLanes::ZERO)
                 .fast_min(LineLanes::splat(self.most_scale));
-            let x = scale * self.xi + (q * shear + origin[0]);
+            let straight = scale * self.xi + (q * shear + origin[0]);
+            let x =
+                if self.frame.sway == 0.0 { straight } else { straight + self.frame.sway_at(q) };
             let left = x.floor();
             steps.q[first..first + 16].copy_from_slice(q.as_array());
             steps.scales[first..first + 16].copy_from_slice(scale.as_array());

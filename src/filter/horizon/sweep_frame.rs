@@ -64,10 +64,11 @@ pub(super) struct SweepFrame<'a> {
     pub(super) depth: f32,
     pub(super) growth: f32,
     pub(super) tilt: f32,
-    /// How much that grows with the depth for which it is right.
+    /// How displacements [bow](super::bow), in texels: along the lines, and across them.
     pub(super) bow: f32,
+    pub(super) sway: f32,
     /// Mean depth of the surface, 0 to 1.
-    mean_depth: f32,
+    pub(super) mean_depth: f32,
 }
 
 /// Sums over the picked lanes.
@@ -123,6 +124,7 @@ impl<'a> SweepFrame<'a> {
             growth: 0.0,
             tilt: 0.0,
             bow: 0.0,
+            sway: 0.0,
             mean_depth: surface.mean_depth(),
         }
     }
@@ -216,7 +218,8 @@ impl<'a> SweepFrame<'a> {
     ) -> PixelsOnLines {
         let [[x, q], _] = self.place(pixels);
         let [rx, ry] = self.residuals(pixels);
-        let (x, q) = (x + rx * self.mean_depth, q + ry * self.mean_depth);
+        let x = x + rx * self.mean_depth - q * self.sway_ahead();
+        let q = q + ry * self.mean_depth;
         // Find the line through the pixel, and how it leans there.
         let scale = q * self.spread + 1.0;
         let xi = (x - q * self.shear) / scale;
