@@ -30,7 +30,7 @@ pub(super) struct Limits {
     /// Seen from the front and from behind, the square of the cosine between normal and ray below which
     /// a ray may pass the relief; 0 where none does.
     pub(super) squares: [f32; 2],
-    /// Whether such a ray may get to where the mesh bends by more or less, or to a break of its texture.
+    /// Whether such a ray may get to where the mesh bends by more or less.
     pub(super) is_uneven: bool,
     /// How many triangles away the nearest break is, an edge beyond which the texture goes on elsewhere;
     /// [`NO_BREAK`] where there is none.
@@ -52,9 +52,8 @@ pub(super) fn limits(mesh: &Mesh, offsets: &[Vec3], neighbors: &[[u32; 3]]) -> V
         edges.map(|(edge, other)| [3 * i + edge, other as usize]).any(found)
     };
     let to_break = to_breaks(neighbors, |i| is_at(&|edges| is_break(mesh, edges), i));
-    let mut all: Vec<_> = (0..bends.len())
-        .map(|i| (bends[i], to_break[i] == 0 || is_at(&|edges| differ(&bends, edges), i)))
-        .collect();
+    let mut all: Vec<_> =
+        (0..bends.len()).map(|i| (bends[i], is_at(&|edges| differ(&bends, edges), i))).collect();
     // A ray that enters at one triangle may leave past another one.
     for _ in 0..rings(mesh, offsets, &bends) {
         all = (0..all.len())
