@@ -4,7 +4,7 @@ mod common;
 
 use basrelief::texture::{ColorImage, Surface, SurfaceMaps, srgb_from_linear};
 use basrelief::{
-    Filter, Frame, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky, render,
+    Environment, Filter, Frame, Light, Lighting, Material, Mesh, Rays, Scene, Settings, Sky, render,
 };
 use common::{cobbles, floor_scene};
 use glam::Vec3;
@@ -148,6 +148,31 @@ fn highlights_are_the_truths() {
         let share = far(&frame) / far(&truth);
         println!("metal {metallic}: {found} dB, {share} of the truth's light at the skyline");
         assert!(found > least && (0.95..1.05).contains(&share), "{found} dB, {share}");
+    }
+}
+
+/// Metal shows what each stone's side reflects, and nothing where that is another stone.
+#[test]
+fn skies_are_reflected_as_the_truth_says() {
+    let (top, horizon) = (Vec3::new(0.3, 0.5, 0.9), Vec3::new(0.8, 0.8, 0.75));
+    let gradient = Sky::Gradient { top, horizon, ground: Vec3::splat(0.1) };
+    // Red on one side, blue on top.
+    let texels = (0..32 * 16).map(|i| {
+        let (x, y) = ((i % 32) as f32 / 16.0 - 1.0, (i / 32) as f32 / 16.0);
+        Vec3::new(0.1 + 0.8 * x.abs(), 0.5, 0.9 - 0.8 * y)
+    });
+    let picture = Environment::new(32, 16, texels.collect::<Vec<_>>(), 0.0).unwrap();
+    let skies = [Sky::Color(Vec3::splat(0.6)), gradient, Sky::Environment(picture)];
+    for (sky, least) in skies.into_iter().zip([32.0; 3]) {
+        let mut scene = floor(cobbles(256, 6), &[], Vec3::ZERO);
+        let material = &mut scene.materials[0];
+        (material.metallic, material.roughness) = (1.0, 0.6);
+        scene.sky = sky;
+        let [frame, truth] = [Filter::default(), Filter::Truth(Rays { samples: 256 })]
+            .map(|filter| draw(&scene, filter));
+        let found = decibels(&frame, &truth);
+        println!("{found} dB");
+        assert!(found > least, "{found} dB under {:?}", scene.sky);
     }
 }
 

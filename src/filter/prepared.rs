@@ -107,6 +107,11 @@ impl Prepared {
         &self.surface
     }
 
+    /// Whether it is not flat.
+    pub(crate) fn has_relief(&self) -> bool {
+        self.relief.is_some()
+    }
+
     /// The heights; `None` where the surface is flat.
     pub fn field(&self) -> Option<&HeightField> {
         let relief = self.relief.as_deref()?;
@@ -139,7 +144,7 @@ impl Prepared {
         }
         // Made without the lock: whoever held it and waited for its tasks could be given one that
         // asks for it. Whoever is last is kept, and all are the same.
-        let made = FarField::new(&self.surface, self.gloss, mib).map(Arc::new);
+        let made = FarField::new(&self.surface, self.gloss.clone(), mib).map(Arc::new);
         *self.far.lock().unwrap_or_else(PoisonError::into_inner) = Some((mib, made.clone()));
         made
     }

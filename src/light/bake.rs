@@ -100,23 +100,27 @@ impl TextureFrame {
         points.filter_map(|to_light| self.beam(to_light, intensity / num as f32)).collect()
     }
 
-    /// Beams from all over the sky. Directions lie as densely as their light counts on the polygon;
-    /// one that is `cos` off it stands for `1 / cos` of what a texel sees that faces it. They come
-    /// in pairs that lie opposite each other, so that what a slope gains by one it loses by the
-    /// other.
+    /// Beams from all over the sky.
     fn sky(&self, sky: &Sky) -> Vec<Beam> {
+        let beams =
+            self.half_space().map(|(to_light, share)| (to_light, sky.radiance(to_light) * share));
+        beams.filter_map(|(to_light, intensity)| self.beam(to_light, intensity)).collect()
+    }
+
+    /// Directions all over the half space above the surface, as dense as their cosine to it, each with
+    /// the part of that space that it stands for, over pi: one that is `cos` off the normal stands for
+    /// `1 / cos` of what a texel sees that faces it. They come in pairs that lie opposite each other, so
+    /// that what a slope gains by one it loses by the other.
+    fn half_space(&self) -> impl Iterator<Item = (Vec3, f32)> {
         let [x, y] = <[Vec3; 2]>::from(self.normal.any_orthonormal_pair());
-        let beam = |[cos, sin]: [f32; 2], share: f32| {
+        spiral(SKY_DIRECTIONS / 2).flat_map(move |(turn, share)| {
+            let ([cos, sin], share) = (turn.map(|c| c as f32), share as f32);
             let up = (1.0 - share).sqrt();
-            let to_light = (x * cos + y * sin) * share.sqrt() + self.normal * up;
-            let intensity = sky.radiance(to_light) * (1.0 / (SKY_DIRECTIONS as f32 * up));
-            self.beam(to_light, intensity)
-        };
-        let pair = |(turn, share): ([f64; 2], f64)| {
-            let [cos, sin] = turn.map(|c| c as f32);
-            [[cos, sin], [-cos, -sin]].map(|turn| beam(turn, share as f32))
-        };
-        spiral(SKY_DIRECTIONS / 2).flat_map(pair).flatten().collect()
+            [[cos, sin], [-cos, -sin]].map(|[cos, sin]| {
+                let direction = (x * cos + y * sin) * share.sqrt() + self.normal * up;
+                (direction, 1.0 / (SKY_DIRECTIONS as f32 * up))
+            })
+        })
     }
 }
 
@@ -158,6 +162,22 @@ pub(crate) fn glossy(
     surface.with_colors(normals, |x, y, albedo| {
         (straight(x, y, albedo) * (along_u.at(x, y)[0] + along_v.at(y, x)[0])).to_array()
     })
+}
+
+/// The mean direction of what each texel sees of the half space above a flat piece of a surface,
+/// `1/pi int V l dl`, texel by texel along u.
+pub(super) fn openings(surface: &Surface, frame: &TextureFrame) -> Vec<[f32; 3]> {
+    let beams = frame.half_space().filter_map(|(direction, share)| {
+        let beam = frame.beam(direction, Vec3::ONE)?;
+        Some(Beam { intensity: beam.to_light * share, ..beam })
+    });
+    let [along_u, along_v] = summed(surface, &beams.collect::<Vec<_>>(), false);
+    let [width, height] = surface.base().size();
+    let texel = |i: usize| {
+        let [a, b] = [along_u.at(i % width, i / width), along_v.at(i / width, i % width)];
+        std::array::from_fn(|c| a[c] + b[c])
+    };
+    (0..width * height).map(texel).collect()
 }
 
 /// The light of beams at each texel: by rows along u and along v, to be added up.

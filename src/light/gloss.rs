@@ -1,24 +1,25 @@
-//! Highlights of a sun, texel by texel.
+//! What is reflected of a sun or of the sky, texel by texel.
 //!
 //! A rough surface shows of a sun what the lobe around each seen normal holds. The sun lies in one
 //! direction over a flat piece of a surface, and the eye in nearly one over a few pixels, or over
 //! all that a table of the far field stands for. So the lobe is taken of each texel where it is
-//! swept, and what is averaged is highlights, not normals.
+//! swept, and what is averaged is highlights, not normals. It is the same with the sky.
 
 use super::bake::TextureFrame;
+use super::openings::Openings;
 use super::reflection::{LEAST_COSINE, alpha};
+use super::sky_lobe::SkyLobe;
 use crate::simd::Lanes;
 use glam::Vec3;
 
 /// Least square of a half vector's length: of an eye and a light that lie opposite each other.
 const LEAST_HALF: f32 = 1e-12;
 
-/// A sun over a flat piece of a rough surface, in the frame of its texture: x along u, y along v,
-/// z off the surface.
-#[derive(Clone, Copy, Debug)]
+/// A sun or the sky over a flat piece of a rough surface, in the frame of its texture: x along u, y
+/// along v, z off the surface.
+#[derive(Clone, Debug)]
 pub struct Gloss {
-    /// Unit direction to the sun.
-    to_light: Vec3,
+    shine: Shine,
     /// `a^2` of the roughness; `None` where texels have their own, in the [length](rough_length) of
     /// their normals.
     alpha_squared: Option<f32>,
@@ -29,17 +30,41 @@ pub struct Gloss {
     relief_depth: f32,
 }
 
+/// What is reflected.
+#[derive(Clone, Debug)]
+enum Shine {
+    /// Unit direction to a sun.
+    Sun(Vec3),
+    /// The sky, and the scale of the colours that it is seen in.
+    Sky(SkyLobe, f32),
+}
+
 impl Gloss {
     /// Of a sun in a direction of any length; `relief_depth` is in repeats.
-    pub fn new(
+    pub fn of_sun(
         frame: &TextureFrame,
         to_sun: Vec3,
         roughness: Option<f32>,
         relief_depth: f32,
     ) -> Self {
+        let to_light = frame.local(to_sun.normalize_or_zero());
+        Self::new(frame, Shine::Sun(to_light), roughness, relief_depth)
+    }
+
+    /// Of the sky, in colours of some scale.
+    pub fn of_sky(
+        frame: &TextureFrame,
+        (sky, color_scale): (SkyLobe, f32),
+        roughness: Option<f32>,
+        relief_depth: f32,
+    ) -> Self {
+        Self::new(frame, Shine::Sky(sky, color_scale), roughness, relief_depth)
+    }
+
+    fn new(frame: &TextureFrame, shine: Shine, roughness: Option<f32>, relief_depth: f32) -> Self {
         let [u, v] = frame.tangents;
         Self {
-            to_light: frame.local(to_sun.normalize_or_zero()),
+            shine,
             alpha_squared: roughness.map(|roughness| alpha(roughness) * alpha(roughness)),
             along: [u, v].map(|along| frame.local(along)),
             down: u.cross(v).length().sqrt(),
@@ -54,10 +79,24 @@ impl Gloss {
         (Vec3::Z * self.down - self.along[0] * u - self.along[1] * v).normalize_or(Vec3::Z)
     }
 
-    /// What texels with such normals show to an eye in a direction; those of coarser levels than the
-    /// base are means.
+    /// What texels see of the sky, where that is what they reflect.
+    pub(crate) fn openings(&self) -> Option<&Openings> {
+        match &self.shine {
+            Shine::Sun(_) => None,
+            Shine::Sky(sky, _) => Some(sky.openings()),
+        }
+    }
+
+    /// What texels with such normals and openings show to an eye in a direction, red, green and blue; those
+    /// of coarser levels than the base are means. Their colours are `full` where they are the surface's
+    /// colour scale.
     #[inline(always)]
-    pub fn shown<L: Lanes>(&self, normal: [L; 3], to_eye: [L; 3], is_base: bool) -> L {
+    pub fn shown<L: Lanes>(
+        &self,
+        (color, full): ([L; 3], f32),
+        [normal, opening, to_eye]: [[L; 3]; 3],
+        is_base: bool,
+    ) -> [L; 3] {
         let spread = if is_base && self.alpha_squared.is_some() {
             L::splat(0.0)
         } else {
@@ -65,8 +104,16 @@ impl Gloss {
             let inverse = L::splat(1.0) / square.at_least(1e-6).sqrt();
             (inverse + inverse - L::splat(2.0)).at_least(0.0)
         };
-        let a = L::splat(self.alpha_squared.unwrap_or(LEAST_OWN)) + spread;
-        lobes(normal, [self.to_light.to_array().map(L::splat), to_eye], a.at_most(1.0))
+        let a = (L::splat(self.alpha_squared.unwrap_or(LEAST_OWN)) + spread).at_most(1.0);
+        match &self.shine {
+            Shine::Sun(to_light) => {
+                let shown = lobes(normal, [to_light.to_array().map(L::splat), to_eye], a);
+                color.map(|color| color * shown)
+            }
+            Shine::Sky(sky, scale) => {
+                sky.shown((color, full / scale), [normal, opening, to_eye], a)
+            }
+        }
     }
 }
 
@@ -134,7 +181,7 @@ mod tests {
     fn the_eye_lies_against_the_view() {
         let tangents = [Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 0.0, -2.0)];
         let frame = TextureFrame { tangents, normal: Vec3::Y };
-        let gloss = Gloss::new(&frame, Vec3::Y, Some(0.5), 0.05);
+        let gloss = Gloss::of_sun(&frame, Vec3::Y, Some(0.5), 0.05);
         // One repeat along u, two world units, for each repeat down.
         let to_eye = gloss.to_eye([0.05, 0.0]);
         assert!(to_eye.distance(Vec3::new(-1.0, 0.0, 1.0).normalize()) < 1e-6, "{to_eye}");

@@ -19,9 +19,10 @@
 //!
 //! which are four numbers of the texel, summed over its horizons.
 
+use super::byte_levels::ByteLevels;
 use crate::relief::directions::diamond_direction;
 use crate::relief::{LitParts, MAX_SLOPE, RowScratch};
-use crate::texture::{Level, Rows, Surface, box_taps};
+use crate::texture::{Level, Rows, Surface};
 use rayon::prelude::*;
 
 /// Directions along the texture, evenly spaced as [diamond angles](crate::relief::directions).
@@ -44,16 +45,13 @@ type Words = [u32; NUM_WORDS];
 
 /// The horizons of a surface's texels, level by level.
 #[derive(Clone, Debug)]
-pub struct Horizons {
-    /// Rows along u, and along v.
-    levels: Vec<[Rows; 2]>,
-}
+pub struct Horizons(ByteLevels);
 
 impl Horizons {
     /// Finds the horizons of a surface with relief.
     pub fn new(surface: &Surface) -> Self {
         let level = surface.base();
-        let mut size = level.size();
+        let size = level.size();
         let mut texels = vec![[0; NUM_WORDS]; size[0] * size[1]];
         for azimuth in 0..NUM_AZIMUTHS {
             let lit = LitHeights::new(level, azimuth, surface.relief_depth());
@@ -72,28 +70,19 @@ impl Horizons {
                 [texel[NORMAL_PLANE], texel[SKY_PLANE]] = sky.words(texel, normal);
             }
         });
-        let mut levels = Vec::new();
-        loop {
-            let rows = Rows::new(size[0], size[1], surface.wrap(), NUM_WORDS, &texels);
-            let turned = rows.turned();
-            levels.push([rows, turned]);
-            if size == [1, 1] {
-                return Self { levels };
-            }
-            (size, texels) = halve(size, &texels);
-        }
+        Self(ByteLevels::new(texels, size, surface.wrap()))
     }
 
     /// The words of a texel of the finest level.
     pub fn texel(&self, x: i32, y: i32) -> Vec<u32> {
-        let rows = &self.levels[0][0];
+        let rows = self.rows(0, false);
         let start = rows.start_at(x, y);
         (0..NUM_WORDS).map(|plane| rows.words()[start + plane * rows.stride()]).collect()
     }
 
     /// The words of a level row by row: along u, or along v where they are wanted turned.
     pub(crate) fn rows(&self, level: usize, is_turned: bool) -> &Rows {
-        &self.levels[level][usize::from(is_turned)]
+        self.0.rows(level, is_turned)
     }
 }
 
@@ -213,27 +202,4 @@ impl SkySums {
             word([signed(sums[1]), signed(sums[2]), sums[3], 0.0]),
         ]
     }
-}
-
-/// Half the size, each byte the mean over the area that it covers.
-fn halve([w, h]: [usize; 2], texels: &[Words]) -> ([usize; 2], Vec<Words>) {
-    let to = [w, h].map(|n| (n / 2).max(1));
-    let columns: Vec<_> = (0..to[0]).map(|x| box_taps(x, w, to[0])).collect();
-    let mut halved = vec![[0; NUM_WORDS]; to[0] * to[1]];
-    halved.par_chunks_exact_mut(to[0]).enumerate().for_each(|(y, row)| {
-        let rows = box_taps(y, h, to[1]);
-        for (texel, columns) in row.iter_mut().zip(&columns) {
-            let mut sums = [[0.0_f32; 4]; NUM_WORDS];
-            for &(j, wy) in &rows {
-                for &(i, wx) in columns {
-                    for (sums, word) in sums.iter_mut().zip(texels[j * w + i]) {
-                        let bytes = word.to_le_bytes();
-                        sums.iter_mut().zip(bytes).for_each(|(s, b)| *s += wx * wy * f32::from(b));
-                    }
-                }
-            }
-            *texel = sums.map(|sums| u32::from_le_bytes(sums.map(|sum| (sum + 0.5) as u8)));
-        }
-    });
-    (to, halved)
 }

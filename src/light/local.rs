@@ -32,6 +32,15 @@ pub struct LocalLight {
     pub is_point: bool,
 }
 
+/// What pixels reflect of suns and of the sky, where it was seen texel by texel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SeenGloss {
+    /// Of all suns together.
+    pub suns: Option<Vec3>,
+    /// Of the sky.
+    pub sky: Option<Vec3>,
+}
+
 /// What light does with a surface: what the diffuse layer shows, and what comes on top of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflected {
@@ -91,15 +100,15 @@ impl LocalLights {
         intensity * (fresnel.at(half.dot(self.to_eye)) / straight)
     }
 
-    /// What a material of base colour `base` does with the light under a mean normal; of suns'
-    /// highlights what is given, else those of the mean normal.
+    /// What a material of base colour `base` does with the light under a mean normal; of what it reflects
+    /// what was seen, else that of the mean normal.
     pub fn reflected(
         &self,
         mean_normal: Vec3,
         (finish, base): (&Finish, Vec3),
         sky: &Sky,
         reflectance: &Reflectance,
-        highlights: Option<Vec3>,
+        seen: SeenGloss,
     ) -> Reflected {
         // Normals that cancel out leave no length to divide by, and rounding may make a mean too
         // long.
@@ -111,9 +120,12 @@ impl LocalLights {
         let fresnel = Fresnel::new(finish, base);
         let of_sky = reflectance.at(n_v, alpha_squared.sqrt());
         let mut added = finish.emissive;
-        added += fresnel.of_sky(of_sky) * self.mirrored(normal, alpha_squared, sky);
-        added += highlights.unwrap_or(Vec3::ZERO);
-        for light in self.lights.iter().filter(|light| light.is_point || highlights.is_none()) {
+        added += match seen.sky {
+            Some(light) => light * self.occlusion,
+            None => fresnel.of_sky(of_sky) * self.mirrored(normal, alpha_squared, sky),
+        };
+        added += seen.suns.unwrap_or(Vec3::ZERO);
+        for light in self.lights.iter().filter(|light| light.is_point || seen.suns.is_none()) {
             let half = (light.to_light + self.to_eye).normalize_or_zero();
             let share = fresnel.at(half.dot(self.to_eye));
             let n_l = normal.dot(light.to_light);

@@ -13,13 +13,16 @@
 //! than one it is: `a^2 + 2 (1 - |n|) / |n|` (Toksvig 2005, "Mipmapping normal maps").
 
 mod bake;
+mod byte_levels;
 mod curved;
 mod disc;
 pub mod exact;
 mod gloss;
 mod horizons;
 mod local;
+mod openings;
 pub mod reflection;
+mod sky_lobe;
 mod surface_point;
 mod vectors;
 
@@ -29,6 +32,9 @@ pub use curved::{Curved, CurvedSun, FrameLanes, LinearSky, Slant, Ways};
 pub use disc::{Disc, spiral};
 pub use gloss::{Gloss, rough_length};
 pub use horizons::{Horizons, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE};
-pub use local::{LocalLight, LocalLights, Reflected};
+pub use local::{LocalLight, LocalLights, Reflected, SeenGloss};
+pub use openings::Openings;
+pub(crate) use openings::{openings_at, unpack_openings};
+pub use sky_lobe::SkyLobe;
 pub use surface_point::{SurfacePoint, unit_axes};
 pub use vectors::{Vectors, cross, repeat_length};

@@ -12,7 +12,7 @@
 //!        M  ^         ^             it falls into one or more texels of the image
 //! ```
 
-use crate::simd::{Blend, TexelLanes, high_half, lane_columns, low_half};
+use crate::simd::{Blend, TexelLanes, high_half, lane_columns, low_half, u32x8};
 use crate::texture::{FULL_F32, Rows, Surface, Wrap, unpack_normals, wrap_index};
 
 /// Least length of a segment, in texels, that a place in it is divided by.
@@ -21,13 +21,17 @@ const LEAST_SEGMENT: f32 = 1e-6;
 /// An image of what is seen, row by row along u.
 pub type SeenImage = Vec<[f32; 3]>;
 
+/// See [`Seen::Shining`].
+type Shown<'a> = &'a (dyn Fn([[TexelLanes; 3]; 2], u32x8) -> [TexelLanes; 3] + Sync);
+
 /// What is seen.
 #[derive(Clone, Copy)]
-pub enum Seen<'a> {
+pub(crate) enum Seen<'a> {
     /// Linear colours, 0 to 1 of the surface's scale.
     Colors,
-    /// The same times what texels with such normals show, 0 or more.
-    Shining(&'a (dyn Fn([TexelLanes; 3]) -> TexelLanes + Sync)),
+    /// What texels show, 0 or more, by their colours and normals and, where rows of the same size say more of
+    /// them, by the word of the nearest.
+    Shining(Shown<'a>, Option<&'a Rows>),
     /// Heights, 0 to 1, three times each.
     Heights,
 }
@@ -43,7 +47,7 @@ pub struct View {
 
 /// The image of `surface` seen in a view, swept on a mip level, in an image of `size`, which is at
 /// most the level's.
-pub fn seen_image(
+pub(crate) fn seen_image(
     surface: &Surface,
     seen: Seen<'_>,
     level: usize,
@@ -183,15 +187,18 @@ impl<'a> Sweep<'a> {
         let colors = || [low_half(red_green), high_half(red_green), low_half(blue_height)];
         let values = match self.seen {
             Seen::Colors => colors(),
-            Seen::Shining(shown) => {
+            Seen::Shining(shown, others) => {
                 let normal = if self.rows.has_normals() {
                     let [near, far] = both(2).map(unpack_normals);
                     [0, 1, 2].map(|i| near[i] + (far[i] - near[i]) * (x - left))
                 } else {
                     [TexelLanes::ZERO, TexelLanes::ZERO, TexelLanes::ONE]
                 };
-                let shown = shown(normal);
-                colors().map(|color| color * shown)
+                let nearest = i32::from(x - left >= 0.5);
+                let word = others.map_or(u32x8::ZERO, |rows| {
+                    Rows::run(rows.row(eta as i32), rows.run_start(left as i32 + nearest))
+                });
+                shown([colors(), normal], word)
             }
             Seen::Heights => [height; 3],
         };

@@ -5,15 +5,15 @@
 //! surface unlit. Pieces of one material that lie in the same directions, such as all triangles of
 //! a floor, share one. Curved meshes are lit place by place.
 
+use super::gloss::gloss;
 use super::ground::LitPiece;
 use super::mapped::texel_finish;
 use super::open_sky::{Facing, OpenSky, Plane};
 use crate::filter::Prepared;
 use crate::light::exact::Occluders;
-use crate::light::reflection::Fresnel;
-use crate::light::{Gloss, TextureFrame, baked, glossy, rough_length};
+use crate::light::reflection::Reflectance;
+use crate::light::{TextureFrame, baked};
 use crate::scene::{Finish, Light, Material, Mesh, Scene, Sky};
-use crate::texture::Normals;
 use glam::Vec3;
 
 /// Most texels of all baked surfaces of a scene together, some hundred MiB. Pieces beyond, in the
@@ -69,7 +69,7 @@ struct Side {
     apart: Vec<Prepared>,
     open_sky: Option<OpenSky>,
     /// See [`LitPiece::gloss`].
-    gloss: Vec<(usize, Prepared)>,
+    gloss: Vec<(Option<usize>, Prepared)>,
 }
 
 impl Baked {
@@ -130,7 +130,7 @@ impl Baked {
         &mut self,
         scene: &Scene,
         occluders: impl Fn() -> &'a Occluders,
-        unlit: impl Fn(usize) -> Option<&'a Prepared>,
+        (unlit, reflectance): (impl Fn(usize) -> Option<&'a Prepared>, &Reflectance),
     ) {
         let mut is_seen = vec![[false; 2]; self.pieces.len()];
         for (m, mesh) in scene.meshes.iter().enumerate() {
@@ -146,7 +146,8 @@ impl Baked {
                 if !is_seen || piece.sides[side].is_some() {
                     continue;
                 }
-                piece.sides[side] = Some(piece.light(side, (scene, &occluders), unlit));
+                piece.sides[side] =
+                    Some(piece.light(side, (scene, &occluders), (unlit, reflectance)));
             }
         }
     }
@@ -206,7 +207,7 @@ impl Piece {
         &self,
         side: usize,
         (scene, occluders): (&Scene, &impl Fn() -> &'a Occluders),
-        unlit: &Prepared,
+        (unlit, reflectance): (&Prepared, &Reflectance),
     ) -> Side {
         let normal = if side == 0 { self.frame.normal } else { -self.frame.normal };
         let frame = TextureFrame { normal, ..self.frame };
@@ -231,22 +232,11 @@ impl Piece {
             }
             open_sky = self.open_sky(side, (scene, occluders()), unlit);
         }
-        let base = |albedo: [f32; 3]| Vec3::from(albedo) * material.base_color;
-        let straight = |x, y, albedo| Fresnel::new(&finish(x, y), base(albedo)).straight;
-        let of_sun = |(i, light): (usize, &Light)| {
-            let Light::Sun { to_light, .. } = *light else { return None };
-            let beams = frame.beams(std::slice::from_ref(light), &Sky::default());
-            let surface = unlit.surface();
-            let roughness = material.maps.roughness.is_none().then_some(material.roughness);
-            let gloss = Gloss::new(&frame, to_light, roughness, surface.relief_depth());
-            let length = |x, y| rough_length(finish(x, y).roughness);
-            let normals =
-                if roughness.is_some() { Normals::Kept } else { Normals::Scaled(&length) };
-            let is_up = !beams.is_empty();
-            is_up.then(|| (i, unlit.glossy(glossy(surface, &beams, normals, straight), gloss)))
+        let gloss = if material.is_matte() {
+            Vec::new()
+        } else {
+            gloss(&frame, material, (scene, reflectance), unlit)
         };
-        let lights = scene.lights.iter().enumerate().filter(|_| !material.is_matte());
-        let gloss = lights.filter_map(of_sun).collect();
         Side { normal, lit: lit(&scene.lights, &scene.sky), apart, open_sky, gloss }
     }
 

@@ -50,8 +50,8 @@ pub(crate) struct LitPiece<'a> {
     /// Under the sky alone, and under each sun alone; nothing where no mesh can hide a sun from it.
     pub(crate) apart: &'a [Prepared],
     /// Of a glossy surface, what the horizon's highlights of each sun are made of, by the sun's
-    /// number among the lights.
-    pub(crate) gloss: &'a [(usize, Prepared)],
+    /// number among the lights, and what it reflects of the sky, which has none.
+    pub(crate) gloss: &'a [(Option<usize>, Prepared)],
     /// What meshes leave of the sky, where they hide any of it.
     pub(crate) open_sky: Option<&'a OpenSky>,
 }

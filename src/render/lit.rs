@@ -3,7 +3,7 @@
 use super::ground::{Ground, pixel_center, surface_point};
 use super::shade::Shader;
 use crate::footprint::Footprint;
-use crate::light::{LocalLights, Reflected};
+use crate::light::{LocalLights, Reflected, SeenGloss};
 use crate::raster::{QuadBlock, QuadPair};
 use crate::scene::{Finish, Scene};
 use crate::settings::Lighting;
@@ -47,7 +47,7 @@ impl Shader<'_> {
             // What has this colour in this light.
             base /= lights.diffuse(normal, sky).max(Vec3::splat(1e-6));
         }
-        let reflected = self.reflected((finish, base), normal, lights, None);
+        let reflected = self.reflected((finish, base), normal, lights, SeenGloss::default());
         diffuse * (reflected.passed * (1.0 - finish.metallic)) + reflected.added
     }
 
@@ -57,10 +57,10 @@ impl Shader<'_> {
         (finish, base): (&Finish, Vec3),
         normal: Vec3,
         lights: &LocalLights,
-        highlights: Option<Vec3>,
+        seen: SeenGloss,
     ) -> Reflected {
         let reflectance = self.prepared.reflectance();
-        lights.reflected(normal, (finish, base), &self.scene.sky, reflectance, highlights)
+        lights.reflected(normal, (finish, base), &self.scene.sky, reflectance, seen)
     }
 
     /// Lists the lights of the covered pixels of pairs of a block, pair by pair and lane by lane.

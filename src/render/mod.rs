@@ -13,6 +13,7 @@ mod curved;
 mod curved_lights;
 mod curved_shadows;
 mod exact;
+mod gloss;
 mod ground;
 mod hidden_lights;
 mod lit;

@@ -130,7 +130,7 @@ impl PreparedScene {
             let kept = self.baked.take().filter(|(relief, _)| *relief == settings.parallax);
             let (_, mut baked) = kept.unwrap_or_else(|| (settings.parallax, Baked::new(scene)));
             let unlit = |material| self.of_material(material, settings.parallax);
-            baked.light(scene, || self.occluders(scene), unlit);
+            baked.light(scene, || self.occluders(scene), (unlit, self.reflectance()));
             if baked.has_shadows() {
                 self.occluders(scene);
             }

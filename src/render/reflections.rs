@@ -6,17 +6,17 @@
 //! highlights. The half vector is the same for all normals of a pixel, so Fresnel's factor comes
 //! once.
 //!
-//! The sky is reflected by the mean normal that is seen. Other filters take the mean normal from
-//! the mip levels around the hit for all of it, over whatever relief is in between. Other meshes
-//! hide nothing.
+//! The sky is reflected by each texel as far as the relief opens to it. Other filters, and surfaces
+//! without relief, take the mean normal from the mip levels around the hit for all of it, over whatever
+//! relief is in between. Other meshes hide nothing.
 
 use super::ground::{Ground, in_lanes};
 use super::hidden_lights::HiddenLights;
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
 use crate::filter::{Batch, Filtered, Scratch};
 use crate::footprint::Footprints;
-use crate::light::LocalLights;
 use crate::light::reflection::Fresnel;
+use crate::light::{LocalLights, SeenGloss};
 use crate::raster::QuadBlock;
 use crate::scene::Finish;
 use crate::settings::{Filter, Trilinear};
@@ -71,8 +71,7 @@ impl Shader<'_> {
             pixels.covered().map(|lane| (pixels.lane(lane), filtered.lane(lane)))
         });
         let places: Vec<_> = places.map(|(pixel, texel)| (ground.finish(&pixel), texel)).collect();
-        let highlights =
-            self.highlights(ground, (block, pairs), (lights, &places), (filter, footprints));
+        let seen = self.seen_gloss(ground, (block, pairs), (lights, &places), (filter, footprints));
         // With a texture of metal the colours are those of the diffuse layer already.
         let has_layer = ground.material.maps.metallic.is_some();
         let dielectric = if has_layer { 1.0 } else { 1.0 - ground.material.metallic };
@@ -83,9 +82,8 @@ impl Shader<'_> {
             let diffuse = color.map(|channel| channel.to_array());
             for (lane, (i, (lights, (finish, texel)))) in pixels.covered().zip(&mut each) {
                 let base = ground.color_of(surface, &texel);
-                let highlights = highlights.as_ref().map(|all| all[i]);
-                let on_top =
-                    self.reflected((&finish, base), texel.normal.into(), lights, highlights);
+                let seen = seen.get(i).copied().unwrap_or_default();
+                let on_top = self.reflected((&finish, base), texel.normal.into(), lights, seen);
                 let diffuse = Vec3::from(diffuse.map(|channel| channel[lane]));
                 lit[lane] = diffuse * (on_top.passed * dielectric) + on_top.added;
             }
@@ -93,22 +91,23 @@ impl Shader<'_> {
         }
     }
 
-    /// The suns' highlights of the covered pixels of some pairs, where it is the horizon that draws.
-    fn highlights(
+    /// What the covered pixels of some pairs reflect, texel by texel, where it is the horizon that
+    /// draws; else nothing.
+    fn seen_gloss(
         &self,
         ground: &Ground,
         (block, pairs): (&QuadBlock, Range<usize>),
         (lights, places): (&[LocalLights], &[(Finish, Texel)]),
         (scratch, footprints): (&mut Scratch, &mut Vec<Footprints>),
-    ) -> Option<Vec<Vec3>> {
+    ) -> Vec<SeenGloss> {
         let filter = &self.settings.filter;
-        let gloss = ground.baked?.gloss;
+        let gloss = ground.baked.map_or(&[][..], |piece| piece.gloss);
         if gloss.is_empty() || !matches!(filter, Filter::Horizon(_)) {
-            return None;
+            return Vec::new();
         }
         let mean = mean_base(ground);
         let to_eyes: Vec<_> = lights.iter().map(|lights| lights.to_eye).collect();
-        let mut sums = vec![Vec3::ZERO; lights.len()];
+        let mut sums = vec![SeenGloss::default(); lights.len()];
         let mut found = vec![Filtered::default(); pairs.len()];
         // All have the same relief.
         self.footprints((ground.unlit, &filter.traits().rule), (block, pairs), footprints);
@@ -121,11 +120,16 @@ impl Shader<'_> {
             for (((sum, seen), lights), (finish, _)) in
                 sums.iter_mut().zip(seen).zip(lights).zip(places)
             {
-                let shown = lights.shown(*light, &Fresnel::new(finish, mean));
-                *sum += Vec3::from(seen.color) * scale * shown;
+                let seen = Vec3::from(seen.color) * scale;
+                if let Some(sun) = light {
+                    let shown = lights.shown(*sun, &Fresnel::new(finish, mean));
+                    *sum.suns.get_or_insert_default() += seen * shown;
+                } else {
+                    sum.sky = Some(seen);
+                }
             }
         }
-        Some(sums)
+        sums
     }
 }
 

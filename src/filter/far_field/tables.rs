@@ -1,13 +1,13 @@
 //! The tables of one surface: for which directions there are any, and how they are built.
 
 use super::encode::FarImage;
-use crate::light::Gloss;
+use crate::light::{Gloss, unpack_openings};
 use crate::relief::directions::{
     Lengths, NUM_LENGTHS, SLOPES, diamond_angle, pseudo_exp, pseudo_log,
 };
 use crate::relief::seen::{Seen, View, seen_depth, seen_image, square_difference};
 use crate::simd::TexelLanes;
-use crate::texture::{Surface, Wrap};
+use crate::texture::{FULL_F32, Surface, Wrap};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
@@ -97,7 +97,7 @@ impl FarField {
             images: Vec::new(),
         };
         // A level's mean normals would show other highlights.
-        far.source = if gloss.is_some() { 0 } else { far.source_level(surface) };
+        far.source = if far.gloss.is_some() { 0 } else { far.source_level(surface) };
         far.images.resize_with(far.starts[NUM_LENGTHS], OnceLock::new);
         Some(far)
     }
@@ -109,7 +109,7 @@ impl FarField {
             let length = self.starts.partition_point(|start| *start <= index) - 1;
             let view = self.view(self.displacement(length, index - self.starts[length]));
             let size = surface.levels()[self.first_level].size();
-            let Some(gloss) = self.gloss else {
+            let Some(gloss) = &self.gloss else {
                 let seen = seen_image(surface, Seen::Colors, self.source, size, view);
                 return FarImage::new(size, seen, 1.0);
             };
@@ -117,8 +117,14 @@ impl FarField {
             let [du, dv] = view.displacement;
             let to_eye = gloss.to_eye([du / texels[0], dv / texels[1]]);
             let to_eye = to_eye.to_array().map(TexelLanes::splat);
-            let shown = |normal| gloss.shown(normal, to_eye, true);
-            let seen = seen_image(surface, Seen::Shining(&shown), self.source, size, view);
+            let shown = |[color, normal]: [_; 2], word| {
+                let directions = [normal, unpack_openings(word), to_eye];
+                gloss.shown((color, FULL_F32), directions, true)
+            };
+            let is_turned = du.abs() > dv.abs();
+            let others = gloss.openings().map(|openings| openings.rows(self.source, is_turned));
+            let seen = Seen::Shining(&shown, others);
+            let seen = seen_image(surface, seen, self.source, size, view);
             // Highlights are as bright as a surface is smooth.
             let brightest = seen.iter().flatten().fold(f32::MIN_POSITIVE, |a, b| a.max(*b));
             FarImage::new(size, seen, brightest)

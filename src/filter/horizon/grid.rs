@@ -12,6 +12,7 @@ use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::sweep_frame::SweepFrame;
 use crate::simd::LineLanes;
+use crate::texture::Rows;
 
 /// Most lines of a grid.
 pub(super) const MOST_LINES: usize = 64;
@@ -59,8 +60,20 @@ pub(super) enum Shown<'a> {
     Colors,
     /// What shines on them, where a curved surface is lit.
     Light(&'a PatchLight<'a>),
-    /// Their highlights of a sun.
+    /// What they reflect of a sun or of the sky.
     Gloss(&'a PatchGloss<'a>),
+}
+
+impl<'a> Shown<'a> {
+    /// What is read of each texel beside its colour, if anything: what hides light from it, or what it
+    /// sees of the sky.
+    pub(super) fn rows(&self) -> Option<&'a Rows> {
+        match self {
+            Self::Colors => None,
+            Self::Light(light) => Some(light.rows),
+            Self::Gloss(gloss) => gloss.openings,
+        }
+    }
 }
 
 /// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then

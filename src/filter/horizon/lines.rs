@@ -39,9 +39,9 @@ pub(super) struct Steps {
     offsets: [f32; SLOTS],
     /// Where the runs of texels start among the level's words; half way between rows there are two.
     starts: [[usize; SLOTS]; 2],
-    /// The same among the words of horizons, where texels are lit; half way between rows by the one
-    /// before.
-    horizons: [usize; SLOTS],
+    /// The same among the words of what else is read, where texels are lit; half way between rows by the
+    /// one before.
+    others: [usize; SLOTS],
 }
 
 impl Steps {
@@ -55,7 +55,7 @@ impl Steps {
             scales: [0.0; SLOTS],
             offsets: [0.0; SLOTS],
             starts: [[0; SLOTS]; 2],
-            horizons: [0; SLOTS],
+            others: [0; SLOTS],
         }
     }
 }
@@ -190,8 +190,8 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
             for i in 0..Self::STEPS as usize {
                 steps.starts[i][first..first + 16].copy_from_slice(&starts(rows, i));
             }
-            if let (true, Shown::Light(light)) = (LIT, self.grid.shown) {
-                steps.horizons[first..first + 16].copy_from_slice(&starts(light.rows, 0));
+            if let (true, Some(rows)) = (LIT, self.grid.shown.rows()) {
+                steps.others[first..first + 16].copy_from_slice(&starts(rows, 0));
             }
         }
     }
@@ -231,13 +231,13 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         if let (true, Shown::Light(light)) = (LIT, self.grid.shown) {
             let p = place * self.grid.step + self.grid.begin;
             let at = [self.others + self.xi, p, height];
-            let shown = light.at(steps.horizons[i], &between, at, steps.q[i]);
+            let shown = light.at(steps.others[i], &between, at, steps.q[i]);
             (0..3).for_each(|c| values[c] *= shown[c]);
         }
         Texels { values, place }
     }
 
-    /// What the texels of a step show of a sun.
+    /// What the texels of a step reflect.
     #[inline(never)]
     fn highlights(
         &self,
@@ -248,8 +248,8 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
     ) -> [LineLanes; 3] {
         let ([r, g, b, x, y, z], _) = self.step_values(steps, i, between);
         let p = steps.places[i] * self.grid.step + self.grid.begin;
-        let shown = gloss.at([x, y, z], [self.others + self.xi, p]);
-        [r, g, b].map(|color| color * shown)
+        let at = [self.others + self.xi, p];
+        gloss.at([[r, g, b], [x, y, z]], at, (steps.others[i], between))
     }
 
     /// [`Self::values`] of a step: of its row, or of both rows beside it.

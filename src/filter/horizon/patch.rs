@@ -93,7 +93,7 @@ pub(super) struct Patches<'a> {
     pub(super) loss: Option<&'a LevelLoss>,
     /// The lights of the pixels and what hides them, where a curved surface is lit.
     pub(super) light: Option<(&'a Curved<'a>, &'a Horizons)>,
-    /// The sun whose highlights are asked for.
+    /// What is reflected, where that is asked for.
     pub(super) gloss: Option<&'a Gloss>,
     /// The pixels, eight a vector.
     pub(super) pixels: &'a [Footprints],
@@ -238,7 +238,8 @@ impl<'a> Patches<'a> {
             let light = PatchLight::new(curved, rows, picks, pixels);
             plan.run::<3, true>(unlit, pixels, (&[], Shown::Light(&light)), totals)
         } else if let Some(gloss) = self.gloss {
-            let gloss = PatchGloss::new(gloss, to_eyes, pixels, plan.level);
+            let rows = (plan.level, plan.frame.is_turned);
+            let gloss = PatchGloss::new(gloss, to_eyes, pixels, rows);
             plan.run::<3, true>(unlit, pixels, (&[], Shown::Gloss(&gloss)), totals)
         } else {
             plan.run::<3, false>(unlit, pixels, (&[], Shown::Colors), totals)
