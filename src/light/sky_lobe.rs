@@ -40,11 +40,8 @@ struct LocalSky {
     share_of_wide: [f32; 2],
 }
 
-/// Half the width of the ramp over a cone's edge, in radians: of a mirror, as cones are found by few
-/// directions, and more for each `a`.
-/// How fast the part of a lobe within the edge of a cone grows with the angle to it, for each `a`. The
-/// distribution of a slope says 2; cones are wider than what the relief leaves open in places. Measured
-/// on metal of roughness 0.3 and 0.6 under skies.
+/// How wide the part of a lobe within a cone is spread over the angle to its edge, for each `a`. The
+/// distribution of a slope says 2; 1.5 is measured, on metal of roughness 0.3 and 0.6 under skies.
 const EDGE: f32 = 1.5;
 
 /// How far what a lobe shows moves toward the middle of the cone where the relief hides the rest of it.
@@ -212,8 +209,7 @@ fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
 mod tests {
     use super::*;
     use crate::simd::PixelLanes;
-    use crate::texture::Surface;
-    use crate::texture::SurfaceMaps;
+    use crate::texture::{Surface, SurfaceMaps};
 
     fn lobe(sky: &Sky, roughness: f32) -> SkyLobe {
         let surface = Surface::new(SurfaceMaps::default()).unwrap();
