@@ -1,5 +1,6 @@
 //! Everything that loading, saving, comparing or a wrong setting can be refused for.
 
+use std::borrow::Cow;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,7 @@ type Cause = Box<dyn std::error::Error + Send + Sync>;
 #[non_exhaustive]
 pub enum Error {
     /// A file cannot be read, decoded or written.
-    #[error("{}: {reason}", place(path, *line))]
+    #[error("{}: {}", place(path, *line), one_line(reason))]
     File {
         /// The file as the user named it.
         path: PathBuf,
@@ -24,7 +25,7 @@ pub enum Error {
         source: Option<Cause>,
     },
     /// A file asks for more than the options allow.
-    #[error("{}: {reason} ({option})", place(path, *line))]
+    #[error("{}: {} ({option})", place(path, *line), one_line(reason))]
     Limit {
         /// The file as the user named it.
         path: PathBuf,
@@ -44,7 +45,7 @@ pub enum Error {
         reason: String,
     },
     /// A part of a [`Scene`](crate::Scene) made by hand is not valid.
-    #[error("{part}: {reason}")]
+    #[error("{}: {}", one_line(part), one_line(reason))]
     Scene {
         /// The part, such as `mesh 3 (floor)`.
         part: String,
@@ -108,7 +109,21 @@ impl Error {
 
 /// `FILE` or `FILE:LINE`.
 fn place(path: &Path, line: Option<usize>) -> String {
-    line.map_or_else(|| path.display().to_string(), |line| format!("{}:{line}", path.display()))
+    let path = path.display().to_string();
+    let path = one_line(&path);
+    line.map_or_else(|| path.to_string(), |line| format!("{path}:{line}"))
+}
+
+/// A text with escapes for control characters: names in files may hold line breaks.
+pub(crate) fn one_line(text: &str) -> Cow<'_, str> {
+    if !text.contains(char::is_control) {
+        return text.into();
+    }
+    let mut line = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        if c.is_control() { line.extend(c.escape_debug()) } else { line.push(c) }
+    }
+    line.into()
 }
 
 /// One line, and the system's usual words without its error number.

@@ -157,6 +157,18 @@ fn files_stay_in_the_folder_unless_more_is_allowed() {
     assert!(files.refusal("b.gltf").contains("buffer 0 'none.bin' is missing"));
 }
 
+/// Names in a file may hold anything; what is said of them is one line.
+#[test]
+fn line_breaks_in_names_are_escaped() {
+    let (files, binary) = (Files::new(), Binary::square());
+    files.write("a.gltf", binary.json(r#","uri":"no\nne.bin""#, &square("{}", "")));
+    assert!(files.refusal("a.gltf").contains(r"buffer 0 'no\nne.bin' is missing"));
+    let used = r#","extensionsUsed":["new\r\nline"]"#;
+    let warnings = loaded(&binary.glb(&square("{}", used))).warnings;
+    assert!(warnings.iter().any(|text| text.contains(r"new\r\nline")), "{warnings:?}");
+    assert!(!warnings.iter().any(|text| text.contains('\n')), "{warnings:?}");
+}
+
 #[test]
 fn nodes_place_instances_and_mirrored_ones_are_turned_over() {
     let scene = r#""scene":0,"scenes":[{"nodes":[1]}],

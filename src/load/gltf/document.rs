@@ -2,7 +2,7 @@
 
 use super::uri;
 use crate::decode::{contain, open_regular};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, one_line};
 use crate::load::files::Folder;
 use crate::load::options::LoadOptions;
 use gltf::binary::Glb;
@@ -124,7 +124,8 @@ impl Document {
 
     /// Keeps a one-line remark about the file.
     pub(super) fn warn(&mut self, text: impl std::fmt::Display) {
-        self.warnings.push(format!("{}: {text}", self.path.display()));
+        let warning = format!("{}: {text}", self.path.display());
+        self.warnings.push(one_line(&warning).into());
     }
 }
 
