@@ -107,16 +107,23 @@ impl<'a> PlaneMaker<'a> {
         // One lane with relief is reason enough to find all eight; flat ones keep what they have.
         if corners.iter().any(|corners| self.needs_view(corners)) {
             let (normals, tangents) = frames(corners);
+            let repeats = [0, 1, 2].map(|c| repeat_length(tangents[0][c], tangents[1][c]));
+            let tangents = if self.has_outlines {
+                own_tangents((&from_eye, &tex_coords), (&normals, tangents))
+            } else {
+                tangents
+            };
             let views = [0, 1, 2].map(|c| {
                 let ray = self.projection.rays(from_eye[c]);
-                view_in_texture_frame(ray, normals[c], [tangents[0][c], tangents[1][c]])
+                let frame = [tangents[0][c], tangents[1][c]];
+                view_in_texture_frame(ray, normals[c], (frame, repeats[c]))
             });
             let view = [0, 1, 2].map(|axis| basis.plane(views.map(|view| view[axis])));
             let planes =
                 planes.iter_mut().enumerate().filter(|(lane, _)| self.needs_view(&corners[*lane]));
             // The ray to a place that is a repeat farther is longer by that; parallel ones are not.
             let longer = if self.projection.is_orthographic() { 0.0 } else { 1.0 };
-            let bend = bends((&normals, &tangents), &tex_coords, (&views, longer));
+            let bend = bends((&normals, &tangents, &repeats), &tex_coords, (&views, longer));
             planes.for_each(|(lane, planes)| {
                 planes.view = [0, 1, 2].map(|i| one(&view[i], lane));
                 if self.has_outlines {
@@ -215,9 +222,42 @@ fn frames(corners: &[Corners; 8]) -> ([Vectors; 3], [[Vectors; 3]; 2]) {
     (vectors(corners, |mesh, i| mesh.normals[i]), tangents)
 }
 
-/// `(alpha, beta, gamma)` of rays in the texture frames of vertices; straight down where there is
-/// no frame.
-fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vectors {
+/// The tangents to view along the relief of a followed mesh: where it is flat, and its texture is bent,
+/// those of the triangle itself, along which rays go until they leave by an edge. Over what is curved
+/// rays pass many triangles, for which the frames at the corners stand together.
+fn own_tangents(
+    (positions, tex_coords): (&[Vectors; 3], &[Vectors; 3]),
+    (normals, tangents): (&[Vectors; 3], [[Vectors; 3]; 2]),
+) -> [[Vectors; 3]; 2] {
+    let edge = |i: usize| [0, 1].map(|axis| tex_coords[i][axis] - tex_coords[0][axis]);
+    let ([u1, v1], [u2, v2]) = (edge(1), edge(2));
+    let inverse = f64x8::ONE / (u1 * v2 - u2 * v1);
+    let [p1, p2] = [1, 2].map(|i| difference(positions[i], positions[0]));
+    let along = |a: f64x8, b: f64x8| [0, 1, 2].map(|i| (p1[i] * a + p2[i] * b) * inverse);
+    let own = [along(v2, -v1), along(-u2, u1)];
+    let differs = |of: &[Vectors; 3]| {
+        let length = dot(of[0], of[0]);
+        let differs = |i: usize| {
+            let turn = difference(of[i], of[0]);
+            dot(turn, turn).simd_gt(length * LEAST_TURN)
+        };
+        differs(1) | differs(2)
+    };
+    let is_one = inverse.is_finite();
+    let is_own = is_one & (differs(&tangents[0]) | differs(&tangents[1])) & !differs(normals);
+    [0, 1]
+        .map(|axis| tangents[axis].map(|of| [0, 1, 2].map(|i| is_own.select(own[axis][i], of[i]))))
+}
+
+/// See [`repeat_length`](crate::light::repeat_length).
+fn repeat_length(u: Vectors, v: Vectors) -> f64x8 {
+    let across = cross(u, v);
+    dot(across, across).sqrt().sqrt()
+}
+
+/// `(alpha, beta, gamma)` of rays in the texture frames of vertices, whose relief goes down by so much
+/// for each repeat; straight down where there is no frame.
+fn view_in_texture_frame(ray: Vectors, n: Vectors, ([u, v], s): ([Vectors; 2], f64x8)) -> Vectors {
     // Find out whether the vectors span a space. Squares are compared, so that no length needs a
     // root.
     let across = cross(u, v);
@@ -227,7 +267,6 @@ fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vect
         & volume.abs().simd_ge(f64x8::splat(f64::MIN_POSITIVE))
         & volume.is_finite();
     // Solve by Cramer's rule with one division for the three quotients.
-    let s = dot(across, across).sqrt().sqrt();
     let scale = f64x8::ONE / (volume * s);
     let solved = [
         dot(cross(v, n), ray) * s * scale,
@@ -242,7 +281,7 @@ fn view_in_texture_frame(ray: Vectors, n: Vectors, [u, v]: [Vectors; 2]) -> Vect
 /// they go farther; 0 where the normals at the corners are equal, or the
 /// texture has no area.
 fn bends(
-    (normals, tangents): (&[Vectors; 3], &[[Vectors; 3]; 2]),
+    (normals, tangents, repeats): (&[Vectors; 3], &[[Vectors; 3]; 2], &[f64x8; 3]),
     tex_coords: &[Vectors; 3],
     (views, longer): (&[Vectors; 3], f64),
 ) -> [[f64x8; 2]; 3] {
@@ -257,14 +296,11 @@ fn bends(
     let [alpha, beta, gamma] = [0, 1, 2].map(|axis| growth(views.map(|view| view[axis])));
     // What a repeat of the surface loses when it goes down one: its offsets, in the first corner's
     // frame, grow by that.
-    let offset = |i: usize| {
-        let across = cross(tangents[0][i], tangents[1][i]);
-        let length = dot(across, across).sqrt().sqrt();
-        normals[i].map(|n| n * length)
-    };
+    let offset = |i: usize| normals[i].map(|n| n * repeats[i]);
     let frame = [tangents[0][0], tangents[1][0]];
     let offsets = [0, 1, 2]
-        .map(|i| view_in_texture_frame(difference(offset(i), offset(0)), normals[0], frame));
+        .map(|i| difference(offset(i), offset(0)))
+        .map(|offset| view_in_texture_frame(offset, normals[0], (frame, repeats[0])));
     let lost = [0, 1].map(|axis| growth(offsets.map(|offset| offset[axis])));
     let down = (views[0][2] + views[1][2] + views[2][2]) * (1.0 / 3.0);
     let turn = |of: [f64x8; 2], axis: usize| {

@@ -8,7 +8,7 @@
 use super::ground::{Ground, Swept};
 use super::hidden_lights::HiddenLights;
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
-use super::shadows::{FIRST, Places, RAYS, of_lane, places, ray_offset};
+use super::shadows::{FIRST, Places, RAYS, edges, of_lane, places};
 use crate::filter::{Batch, Filtered};
 use crate::light::FrameLanes;
 use crate::light::exact::{LightRay, Occluders, Receiver};
@@ -51,12 +51,7 @@ impl Shader<'_> {
             let Light::Point { position, .. } = *light else { continue };
             if occluders.may_hide(&receiver, position) {
                 let of = |(places, is_back): &(Places, u8)| {
-                    PixelLanes::new(std::array::from_fn(|lane| {
-                        let is_covered = places.covered >> lane & 1 == 1;
-                        let is_turned = is_back >> lane & 1 == 1;
-                        let hidden = || hidden_part(occluders, position, places, (lane, is_turned));
-                        if is_covered { hidden() } else { 0.0 }
-                    }))
+                    hidden_part(occluders, position, places, *is_back)
                 };
                 *hidden = pixels.iter().map(of).collect();
             }
@@ -118,27 +113,30 @@ impl Shader<'_> {
     }
 }
 
-/// The part of a pixel from which meshes hide a point.
-fn hidden_part(
-    occluders: &Occluders,
-    light: Vec3,
-    places: &Places,
-    (lane, is_turned): (usize, bool),
-) -> f32 {
-    let steps = places.steps.each_ref().map(|step| of_lane(step, lane));
-    let reach = f64::from(places.reach.as_array()[lane]);
-    let is_hidden = |ray: usize| {
-        let [x, y] = ray_offset(ray);
-        let from = (of_lane(&places.relief, lane) + steps[0] * x + steps[1] * y).as_dvec3();
-        let way = light.as_dvec3() - from;
-        let distance = way.length();
-        let Some(direction) = way.try_normalize() else { return false };
-        occluders.hide(&LightRay { from, direction, distance, reach, is_turned })
+/// The parts of pixels from which meshes hide a point.
+fn hidden_part(occluders: &Occluders, light: Vec3, places: &Places, is_back: u8) -> PixelLanes {
+    let mut nums = [0; 8];
+    let count = |nums: &mut [usize; 8], lanes: u8, ray: usize| {
+        let starts = places.start(ray);
+        for lane in set_bits(lanes) {
+            let from = of_lane(&starts, lane).as_dvec3();
+            let way = light.as_dvec3() - from;
+            let distance = way.length();
+            let Some(direction) = way.try_normalize() else { continue };
+            let reach = f64::from(places.reach.as_array()[lane]);
+            let is_turned = is_back >> lane & 1 == 1;
+            let ray = LightRay { from, direction, distance, reach, is_turned };
+            nums[lane] += usize::from(occluders.hide(&ray));
+        }
     };
-    let num = FIRST.into_iter().filter(|ray| is_hidden(*ray)).count();
-    if num == 0 || num == FIRST.len() {
-        return num as f32 / FIRST.len() as f32;
+    FIRST.into_iter().for_each(|ray| count(&mut nums, places.covered, ray));
+    let is = |num: usize| (0..8).fold(0, |bits, i| bits | u8::from(nums[i] == num) << i);
+    let edges = edges([is(0), is(FIRST.len())], places.covered);
+    if edges != 0 {
+        (0..RAYS).filter(|ray| !FIRST.contains(ray)).for_each(|ray| count(&mut nums, edges, ray));
     }
-    let others = (0..RAYS).filter(|ray| !FIRST.contains(ray));
-    (num + others.filter(|ray| is_hidden(*ray)).count()) as f32 / RAYS as f32
+    PixelLanes::new(std::array::from_fn(|lane| {
+        let num = if edges >> lane & 1 == 1 { RAYS } else { FIRST.len() };
+        nums[lane] as f32 / num as f32
+    }))
 }

@@ -19,17 +19,17 @@ use super::shade::{ShadeScratch, Shader};
 use crate::light::exact::{Occluders, Receiver};
 use crate::light::{Disc, Vectors, cross, repeat_length};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
-use crate::relief::{displacement, march};
+use crate::relief::{HeightField, displacement, march};
 use crate::scene::{Light, Scene};
-use crate::simd::{PixelLanes, set_bits};
+use crate::simd::{PixelLanes, bits_mask, set_bits};
 use glam::Vec3;
 
 /// Rays of a pixel to each sun; a square number.
 pub(super) const RAYS: usize = 16;
 
-/// Those of them that go first: to the four points nearest to the disc's edge, from places all over
-/// the pixel.
-pub(super) const FIRST: [usize; 4] = [2, 4, 9, 11];
+/// Those of them that go first: to points near the disc's edge, from places of which each has a row and
+/// a column of the pixel for itself.
+pub(super) const FIRST: [usize; 4] = [2, 4, 11, 13];
 
 /// A sun, and the triangles that may hide it from a block.
 pub(super) struct Hidden {
@@ -84,9 +84,18 @@ impl Shader<'_> {
 }
 
 /// Where a ray starts in its pixel, in pixels from the middle: by rows and columns.
-pub(super) fn ray_offset(ray: usize) -> [f32; 2] {
+fn ray_offset(ray: usize) -> [f32; 2] {
     const SIDE: usize = 4;
     [ray % SIDE, ray / SIDE].map(|i| (i as f32 + 0.5) / SIDE as f32 - 0.5)
+}
+
+/// The covered pixels that all rays are sent from, by those whose first rays all arrive and those of
+/// which none does: quads that are not all lit or all dark, since few rays do not find each edge.
+pub(super) fn edges(alike: [u8; 2], covered: u8) -> u8 {
+    const QUADS: [u8; 2] = [0x0f, 0xf0];
+    let of_quad = |quad| covered & quad;
+    let is_edge = |pixels: &u8| alike.iter().all(|alike| pixels & !alike != 0);
+    QUADS.map(of_quad).into_iter().filter(is_edge).fold(0, |all, pixels| all | pixels)
 }
 
 /// The parts of each sun that are not seen from the pixels of a block's pairs: sun by sun, pair by
@@ -136,13 +145,15 @@ pub(super) fn along(v: &Vectors, axis: Vec3) -> PixelLanes {
 }
 
 /// Where the pixels of a pair are in the world.
-pub(super) struct Places {
+pub(super) struct Places<'a> {
     /// Where the view rays of the pixels' centres meet the relief.
     pub(super) relief: Vectors,
     /// Where they pass the polygon.
     pub(super) polygon: Vectors,
     /// How far that point moves from a column of pixels to the next, and a row.
-    pub(super) steps: [Vectors; 2],
+    steps: [Vectors; 2],
+    /// The way from there into the relief, where there is one.
+    descent: Option<Descent<'a>>,
     /// How far above a ray's start a triangle hides nothing that it passes from behind: its own
     /// polygon, or one that stands on it. See [`LightRay::reach`](crate::light::exact::LightRay).
     pub(super) reach: PixelLanes,
@@ -150,12 +161,56 @@ pub(super) struct Places {
     pub(super) covered: u8,
 }
 
-impl Places {
-    /// How far along an axis points over the covered pixels around `from` lie.
-    fn range(&self, from: &Vectors, axis: Vec3) -> [f32; 2] {
+/// View rays on their way from the polygon into a relief.
+struct Descent<'a> {
+    field: &'a HeightField,
+    /// Where they pass the polygon, in repeats, and how far that moves from a column of pixels to the
+    /// next, and a row.
+    uv: [PixelLanes; 2],
+    uv_steps: [[PixelLanes; 2]; 2],
+    /// How far they move along the texture down to the deepest relief, in repeats, and in the world.
+    displacement: [PixelLanes; 2],
+    way: Vectors,
+}
+
+impl Descent<'_> {
+    /// From the polygon to where the rays so many pixels from the pixels' centres meet the relief.
+    fn to_relief(&self, [x, y]: [f32; 2]) -> Vectors {
+        let [column, row] = &self.uv_steps;
+        let uv = [0, 1].map(|i| self.uv[i] + column[i] * x + row[i] * y);
+        let depth = march(self.field, &uv, &self.displacement);
+        self.way.map(|axis| axis * depth)
+    }
+}
+
+impl Places<'_> {
+    /// Where a ray starts: the first ones where relief as deep as under the pixel's centre lies under
+    /// their place, the others where their own view ray meets it, as within a pixel of the far field the
+    /// relief goes up and down by more than the pixel is wide.
+    pub(super) fn start(&self, ray: usize) -> Vectors {
+        let offset = ray_offset(ray);
+        match &self.descent {
+            Some(descent) if !FIRST.contains(&ray) => {
+                let (polygon, way) = (self.moved(&self.polygon, offset), descent.to_relief(offset));
+                [0, 1, 2].map(|i| polygon[i] + way[i])
+            }
+            _ => self.moved(&self.relief, offset),
+        }
+    }
+
+    /// Points under places so many pixels from the pixels' centres.
+    fn moved(&self, points: &Vectors, [x, y]: [f32; 2]) -> Vectors {
+        let [column, row] = &self.steps;
+        [0, 1, 2].map(|i| points[i] + column[i] * x + row[i] * y)
+    }
+
+    /// How far along an axis, from a point, the covered pixels lie down to the deepest relief.
+    fn range(&self, from: Vec3, axis: Vec3) -> [f32; 2] {
         let half = half_width(&self.steps, axis);
-        let middle = along(from, axis);
-        range(self.covered, middle - half, middle + half)
+        let polygon = along(&self.polygon, axis) - axis.dot(from);
+        let way = self.descent.as_ref().map_or(PixelLanes::ZERO, |down| along(&down.way, axis));
+        let (least, most) = (way.fast_min(PixelLanes::ZERO), way.fast_max(PixelLanes::ZERO));
+        range(self.covered, polygon + least - half, polygon + most + half)
     }
 }
 
@@ -171,11 +226,11 @@ pub(super) fn range(lanes: u8, least: PixelLanes, most: PixelLanes) -> [f32; 2] 
         .fold([f32::MAX, f32::MIN], |[a, b], lane| [a.min(least[lane]), b.max(most[lane])])
 }
 
-/// How far a point moves from a column of pixels to the next, and a row.
-pub(super) fn steps(position: &Vectors) -> [Vectors; 2] {
+/// How far something moves from a column of pixels to the next, and a row.
+pub(super) fn steps<const N: usize>(of: &[PixelLanes; N]) -> [[PixelLanes; N]; 2] {
     // Pixels of a quad: lanes 0 and 1 side by side, 0 and 2 one above the other.
     [1, 2].map(|by| {
-        position.map(|axis| {
+        of.map(|axis| {
             let axis = axis.to_array();
             PixelLanes::new(std::array::from_fn(|lane| {
                 axis[lane / 4 * 4 + by] - axis[lane / 4 * 4]
@@ -184,25 +239,33 @@ pub(super) fn steps(position: &Vectors) -> [Vectors; 2] {
     })
 }
 
-pub(super) fn places(pair: &QuadPair, ground: &Ground, lit: &LitLanes, normal: &Vectors) -> Places {
+pub(super) fn places<'a>(
+    pair: &QuadPair,
+    ground: &Ground<'a>,
+    lit: &LitLanes,
+    normal: &Vectors,
+) -> Places<'a> {
     let LitLanes { position, tangent_u, tangent_v, .. } = *lit;
     let all = Places {
         relief: position,
         polygon: position,
         steps: steps(&position),
+        descent: None,
         reach: PixelLanes::ZERO,
         covered: pair.covered_bits(),
     };
     let Some(field) = ground.prepared.field() else { return all };
-    let along = displacement(&pair.view(), field.relief_depth);
-    let depth = march(field, &pair.uv, &along);
+    let displacement = displacement(&pair.view(), field.relief_depth);
     let repeat = repeat_length(&cross(&tangent_u, &tangent_v));
-    let down = depth * repeat * field.relief_depth;
-    let relief = [0, 1, 2].map(|i| {
-        let moved = (tangent_u[i] * along[0] + tangent_v[i] * along[1]) * depth;
-        position[i] + moved - down * normal[i]
+    let down = repeat * field.relief_depth;
+    let way = [0, 1, 2].map(|i| {
+        tangent_u[i] * displacement[0] + tangent_v[i] * displacement[1] - down * normal[i]
     });
-    Places { relief, reach: repeat * (2.0 * field.relief_depth), ..all }
+    let to_relief = march(field, &pair.uv, &displacement);
+    let relief = [0, 1, 2].map(|i| position[i] + way[i] * to_relief);
+    let descent =
+        Some(Descent { field, uv: pair.uv, uv_steps: steps(&pair.uv), displacement, way });
+    Places { relief, descent, reach: down * 2.0, ..all }
 }
 
 impl Hidden {
@@ -227,25 +290,25 @@ impl Hidden {
         if self.triangles.is_empty() {
             return PixelLanes::ZERO;
         }
-        let from = [0, 1, 2].map(|i| places.relief[i] - middle[i]);
-        let near = self.near(&from, places);
+        let near = self.near(places, middle);
         if near.is_empty() {
             return PixelLanes::ZERO;
         }
-        let hidden = |sum, ray| sum + self.is_hidden(&near, &from, places, ray);
+        let hidden = |sum, ray| sum + self.is_hidden(&near, places, middle, ray);
         let count = FIRST.into_iter().fold(PixelLanes::ZERO, hidden);
         let most = FIRST.len() as f32;
-        let is_edge = count.simd_gt(PixelLanes::ZERO) & count.simd_lt(PixelLanes::splat(most));
-        if !is_edge.any() {
+        let is = |num: f32| count.simd_eq(PixelLanes::splat(num)).to_bitmask() as u8;
+        let edges = edges([is(0.0), is(most)], places.covered);
+        if edges == 0 {
             return count * (1.0 / most);
         }
         let all = (0..RAYS).filter(|ray| !FIRST.contains(ray)).fold(count, hidden);
-        is_edge.select(all * (1.0 / RAYS as f32), count * (1.0 / most))
+        bits_mask(edges).select(all * (1.0 / RAYS as f32), count * (1.0 / most))
     }
 
     /// The triangles that cover a pixel of a pair as the sun sees them.
-    fn near(&self, from: &Vectors, places: &Places) -> Vec<&[Vec3; 3]> {
-        let ranges = self.across.map(|axis| places.range(from, axis));
+    fn near(&self, places: &Places, middle: Vec3) -> Vec<&[Vec3; 3]> {
+        let ranges = self.across.map(|axis| places.range(middle, axis));
         let is_near = |outline: &[[f32; 2]; 2]| {
             outline.iter().zip(&ranges).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1])
         };
@@ -257,15 +320,15 @@ impl Hidden {
     fn is_hidden(
         &self,
         triangles: &[&[Vec3; 3]],
-        from: &Vectors,
         places: &Places,
+        middle: Vec3,
         ray: usize,
     ) -> PixelLanes {
         // Over the disc they go in another order than over the pixel, so that no part of the one goes
         // with a part of the other.
-        let [x, y] = ray_offset(ray);
         let direction = self.directions[ray * 7 % RAYS];
-        let from = [0, 1, 2].map(|i| from[i] + places.steps[0][i] * x + places.steps[1][i] * y);
+        let from = places.start(ray);
+        let from = [0, 1, 2].map(|i| from[i] - middle[i]);
         let mut hits = PixelLanes::ZERO;
         for triangle in triangles {
             hits |= passes(&from, direction, triangle, places.reach);
