@@ -4,7 +4,8 @@
 //! The ray to a corner, in the corner's texture frame, solves `ray = alpha U + beta V - gamma s N`
 //! with `U = dP/du`, `V = dP/dv`, `s = sqrt(|U x V|)`. By Cramer's rule, with `volume = N . (U x
 //! V)`, `alpha = (V x N) . ray / volume`, `beta = (N x U) . ray / volume`, `gamma = -(U x V) . ray
-//! / (s volume)`. With a frame at each corner, curved surfaces stay smooth.
+//! / (s volume)`. With a frame at each corner, curved surfaces stay smooth; flat triangles whose texture is
+//! bent have one frame, their own.
 
 use super::quad::{AttributePlanes, LitPlanes, Plane};
 use crate::geometry::{BasisLanes, Geometry, Projection, ScreenTriangle};
@@ -17,7 +18,7 @@ use glam::Vec3;
 /// tangents in f32 are not known better.
 const FLAT: f64 = 1e-6;
 
-/// Least difference of normals, squared, that is no rounding.
+/// Least difference of vectors, squared, as a share of their length squared, that is no rounding.
 const LEAST_TURN: f64 = 1e-10;
 
 /// Eight vectors of three components.
@@ -229,24 +230,36 @@ fn own_tangents(
     (positions, tex_coords): (&[Vectors; 3], &[Vectors; 3]),
     (normals, tangents): (&[Vectors; 3], [[Vectors; 3]; 2]),
 ) -> [[Vectors; 3]; 2] {
+    let growth = growth(tex_coords);
+    let along = [0, 1, 2].map(|i| growth(positions.map(|position| position[i])));
+    let is_finite = |mask, lanes: &f64x8| mask & lanes.is_finite();
+    let is_own = (differ(&tangents[0]) | differ(&tangents[1])) & !differ(normals);
+    let is_own = along.iter().flatten().fold(is_own, is_finite);
+    [0, 1].map(|axis| {
+        let own = along.map(|component| component[axis]);
+        tangents[axis].map(|of| [0, 1, 2].map(|i| is_own.select(own[i], of[i])))
+    })
+}
+
+/// By how much a number at the corners of triangles grows per repeat along u and along v.
+fn growth(tex_coords: &[Vectors; 3]) -> impl Fn([f64x8; 3]) -> [f64x8; 2] {
     let edge = |i: usize| [0, 1].map(|axis| tex_coords[i][axis] - tex_coords[0][axis]);
     let ([u1, v1], [u2, v2]) = (edge(1), edge(2));
-    let inverse = f64x8::ONE / (u1 * v2 - u2 * v1);
-    let [p1, p2] = [1, 2].map(|i| difference(positions[i], positions[0]));
-    let along = |a: f64x8, b: f64x8| [0, 1, 2].map(|i| (p1[i] * a + p2[i] * b) * inverse);
-    let own = [along(v2, -v1), along(-u2, u1)];
-    let differs = |of: &[Vectors; 3]| {
-        let length = dot(of[0], of[0]);
-        let differs = |i: usize| {
-            let turn = difference(of[i], of[0]);
-            dot(turn, turn).simd_gt(length * LEAST_TURN)
-        };
-        differs(1) | differs(2)
+    let area = u1 * v2 - u2 * v1;
+    move |corners| {
+        let (c1, c2) = (corners[1] - corners[0], corners[2] - corners[0]);
+        [(c1 * v2 - c2 * v1) / area, (c2 * u1 - c1 * u2) / area]
+    }
+}
+
+/// Where vectors at the corners differ by more than rounding.
+fn differ(corners: &[Vectors; 3]) -> f64x8 {
+    let least = dot(corners[0], corners[0]) * LEAST_TURN;
+    let differs = |i: usize| {
+        let turn = difference(corners[i], corners[0]);
+        dot(turn, turn).simd_gt(least)
     };
-    let is_one = inverse.is_finite();
-    let is_own = is_one & (differs(&tangents[0]) | differs(&tangents[1])) & !differs(normals);
-    [0, 1]
-        .map(|axis| tangents[axis].map(|of| [0, 1, 2].map(|i| is_own.select(own[axis][i], of[i]))))
+    differs(1) | differs(2)
 }
 
 /// See [`repeat_length`](crate::light::repeat_length).
@@ -285,14 +298,7 @@ fn bends(
     tex_coords: &[Vectors; 3],
     (views, longer): (&[Vectors; 3], f64),
 ) -> [[f64x8; 2]; 3] {
-    let edge = |i: usize| [0, 1].map(|axis| tex_coords[i][axis] - tex_coords[0][axis]);
-    let ([u1, v1], [u2, v2]) = (edge(1), edge(2));
-    let area = u1 * v2 - u2 * v1;
-    // By how much a number at the corners grows per repeat along u and along v.
-    let growth = |corners: [f64x8; 3]| {
-        let (c1, c2) = (corners[1] - corners[0], corners[2] - corners[0]);
-        [(c1 * v2 - c2 * v1) / area, (c2 * u1 - c1 * u2) / area]
-    };
+    let growth = growth(tex_coords);
     let [alpha, beta, gamma] = [0, 1, 2].map(|axis| growth(views.map(|view| view[axis])));
     // What a repeat of the surface loses when it goes down one: its offsets, in the first corner's
     // frame, grow by that.
@@ -310,14 +316,8 @@ fn bends(
         })
     };
     let bend = [gamma, turn(alpha, 0), turn(beta, 1)];
-    let differs = |i: usize| {
-        let turn = difference(normals[i], normals[0]);
-        dot(turn, turn).simd_gt(f64x8::splat(LEAST_TURN))
-    };
-    let is_bent = bend
-        .iter()
-        .flatten()
-        .fold(differs(1) | differs(2), |is_bent, lanes| is_bent & lanes.is_finite());
+    let is_bent =
+        bend.iter().flatten().fold(differ(normals), |is_bent, lanes| is_bent & lanes.is_finite());
     bend.map(|of| of.map(|lanes| is_bent.select(lanes, f64x8::ZERO)))
 }
 

@@ -175,9 +175,8 @@ struct Descent<'a> {
 
 impl Descent<'_> {
     /// From the polygon to where the rays so many pixels from the pixels' centres meet the relief.
-    fn to_relief(&self, [x, y]: [f32; 2]) -> Vectors {
-        let [column, row] = &self.uv_steps;
-        let uv = [0, 1].map(|i| self.uv[i] + column[i] * x + row[i] * y);
+    fn to_relief(&self, offset: [f32; 2]) -> Vectors {
+        let uv = moved(&self.uv, &self.uv_steps, offset);
         let depth = march(self.field, &uv, &self.displacement);
         self.way.map(|axis| axis * depth)
     }
@@ -189,19 +188,14 @@ impl Places<'_> {
     /// relief goes up and down by more than the pixel is wide.
     pub(super) fn start(&self, ray: usize) -> Vectors {
         let offset = ray_offset(ray);
+        let moved = |points| moved(points, &self.steps, offset);
         match &self.descent {
             Some(descent) if !FIRST.contains(&ray) => {
-                let (polygon, way) = (self.moved(&self.polygon, offset), descent.to_relief(offset));
+                let (polygon, way) = (moved(&self.polygon), descent.to_relief(offset));
                 [0, 1, 2].map(|i| polygon[i] + way[i])
             }
-            _ => self.moved(&self.relief, offset),
+            _ => moved(&self.relief),
         }
-    }
-
-    /// Points under places so many pixels from the pixels' centres.
-    fn moved(&self, points: &Vectors, [x, y]: [f32; 2]) -> Vectors {
-        let [column, row] = &self.steps;
-        [0, 1, 2].map(|i| points[i] + column[i] * x + row[i] * y)
     }
 
     /// How far along an axis, from a point, the covered pixels lie down to the deepest relief.
@@ -237,6 +231,15 @@ pub(super) fn steps<const N: usize>(of: &[PixelLanes; N]) -> [[PixelLanes; N]; 2
             }))
         })
     })
+}
+
+/// Something so many pixels from the pixels' centres, by its [`steps`].
+fn moved<const N: usize>(
+    of: &[PixelLanes; N],
+    [column, row]: &[[PixelLanes; N]; 2],
+    [x, y]: [f32; 2],
+) -> [PixelLanes; N] {
+    std::array::from_fn(|i| of[i] + column[i] * x + row[i] * y)
 }
 
 pub(super) fn places<'a>(
