@@ -99,6 +99,21 @@ fn a_torus_is_lit_as_the_truth_lights_it() {
 }
 
 #[test]
+fn a_glossy_torus_is_lit_as_the_truth_lights_it() {
+    let sun = Light::sun(Vec3::new(-0.45, 0.577, -0.9), Vec3::splat(0.8));
+    let point = Light::Point { position: Vec3::new(1.0, 2.0, 2.0), intensity: Vec3::splat(4.0) };
+    for (light, metallic, least) in [(sun, 0.0, 37.0), (sun, 1.0, 31.0), (point, 1.0, 32.0)] {
+        let mut scene = torus(cobbles(128, 4), &[light], Vec3::splat(0.3));
+        scene.materials[0] =
+            Material { metallic, roughness: 0.5, specular: 1.0, ..scene.materials[0].clone() };
+        let [swept, truth] = [Filter::default(), Filter::Truth(Rays { samples: 128 })]
+            .map(|filter| draw(&scene, filter));
+        let found = decibels(&swept, &truth, 3000.0);
+        assert!(found > least, "{found} dB, {metallic} of metal under {light:?}");
+    }
+}
+
+#[test]
 fn in_a_white_furnace_nothing_shines() {
     let white = ColorImage::from_fn(64, 64, |_, _| [1.0; 3]);
     let maps = SurfaceMaps { albedo: Some(white), ..cobbles(64, 4) };

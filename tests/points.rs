@@ -43,6 +43,17 @@ fn relief_hides_points_as_in_the_truth() {
 }
 
 #[test]
+fn relief_hides_points_from_what_it_reflects() {
+    for (metallic, least) in [(0.0, 38.0), (1.0, 34.0)] {
+        let mut scene = floor(cobbles(128, 4), Vec3::new(0.3, 1.0, 2.5));
+        scene.materials[0] =
+            Material { metallic, roughness: 0.5, specular: 1.0, ..scene.materials[0].clone() };
+        let found = decibels(&draw(&scene, Filter::default()), &draw(&scene, TRUTH), 1500.0);
+        assert!(found > least, "{found} dB, {metallic} of metal");
+    }
+}
+
+#[test]
 fn meshes_hide_points_from_flat_pieces() {
     let flat = SurfaceMaps { height: None, ..cobbles(128, 4) };
     // All of the error is at the edges, which go from white to black within a pixel.

@@ -70,7 +70,7 @@ pub mod visible;
 pub use crate::footprint::{Footprint, Footprints};
 pub use batch::{Batch, Filtered, LevelChoice, Work};
 pub use dispatch::Scratch;
-pub(crate) use horizon::light_at;
+pub(crate) use horizon::lit_at;
 pub use prepared::Prepared;
 pub use samples::{SampleOffsets, Samples};
 pub use traits::{Reads, Traits};

@@ -146,22 +146,16 @@ pub fn baked(
     })
 }
 
-/// The surface with what it reflects of light that comes straight for its colours, by the column, row
-/// and albedo of a texel, times the part of each texel that a sun's beams reach. Normals stay,
-/// or get a length: what of that gets to the eye depends on where that is.
-pub(crate) fn glossy(
+/// The part of suns' light that reaches a surface's texels over its relief, by column and row.
+pub(crate) fn lit_parts(
     surface: &Surface,
     beams: &[Beam],
-    normals: Normals,
-    straight: impl Fn(usize, usize, [f32; 3]) -> Vec3 + Sync,
-) -> Surface {
+) -> impl Fn(usize, usize) -> f32 + Sync + use<> {
     let all = beams.iter().fold(0.0, |sum, beam| sum + beam.intensity.element_sum());
     let share = |beam: &Beam| Vec3::splat(beam.intensity.element_sum() / all);
     let beams: Vec<_> = beams.iter().map(|b| Beam { intensity: share(b), ..*b }).collect();
     let [along_u, along_v] = summed(surface, &beams, false);
-    surface.with_colors(normals, |x, y, albedo| {
-        (straight(x, y, albedo) * (along_u.at(x, y)[0] + along_v.at(y, x)[0])).to_array()
-    })
+    move |x, y| along_u.at(x, y)[0] + along_v.at(y, x)[0]
 }
 
 /// The mean direction of what each texel sees of the half space above a flat piece of a surface,

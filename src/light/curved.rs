@@ -1,8 +1,10 @@
 //! Lights as eight pixels of a curved surface see them.
 
 use super::disc::spiral;
+use super::sky_shares::SkyShares;
 use super::vectors::{Vectors, cross, dot, repeat_length};
 use crate::relief::finite;
+use crate::scene::Eye;
 use crate::simd::PixelLanes;
 use glam::Vec3;
 
@@ -55,6 +57,30 @@ pub struct Curved<'a> {
     pub points: &'a [Vec3],
     /// The ways to each of them from the first vector, from the second, and so on.
     pub ways: &'a [Ways],
+    /// Where what is reflected is asked for, not diffuse light.
+    pub shine: Option<Shine<'a>>,
+}
+
+/// How a surface reflects whose colours are what it does of light that comes straight.
+#[derive(Clone, Copy, Debug)]
+pub struct Luster {
+    /// `a^2` of the roughness; `None` where texels have their own, in the
+    /// [length](super::rough_length) of their normals.
+    pub alpha_squared: Option<f32>,
+    /// What it reflects of light along it, and the value of its greatest colour.
+    pub grazing: f32,
+    pub color_scale: f32,
+    /// What it reflects of the sky.
+    pub sky: SkyShares,
+}
+
+/// What highlights depend on beside the lights.
+#[derive(Clone, Copy, Debug)]
+pub struct Shine<'a> {
+    /// How the surface reflects.
+    pub luster: Luster,
+    /// Unit directions to the eye from each vector of pixels: along u, along v, off the surface.
+    pub to_eyes: &'a [Vectors],
 }
 
 /// A sun on a curved surface.
@@ -108,6 +134,9 @@ impl<'a> Curved<'a> {
             skies: self.skies.get(first..first + num).unwrap_or_default(),
             slants: &self.slants[first * suns..(first + num) * suns],
             ways: &self.ways[first * points..(first + num) * points],
+            shine: self
+                .shine
+                .map(|shine| Shine { to_eyes: &shine.to_eyes[first..first + num], ..shine }),
             ..*self
         }
     }
@@ -157,6 +186,13 @@ impl FrameLanes {
             along: [along[0], along[1], up].map(finite),
             down: [self.axes.map(|axis| dot(&axis, &ray)), in_texture],
         }
+    }
+
+    /// Unit directions to the eye from pixels at `position`: along u, along v, off the surface.
+    pub fn to_eye(&self, position: &Vectors, eye: Eye) -> Vectors {
+        let way = [0, 1, 2].map(|i| PixelLanes::splat(eye.place[i]) - position[i] * eye.share);
+        let way = unit(&way);
+        self.axes.map(|axis| dot(&axis, &way))
     }
 
     /// Light from a unit direction.

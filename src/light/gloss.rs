@@ -97,14 +97,7 @@ impl Gloss {
         [normal, opening, to_eye]: [[L; 3]; 3],
         is_base: bool,
     ) -> [L; 3] {
-        let spread = if is_base && self.alpha_squared.is_some() {
-            L::splat(0.0)
-        } else {
-            let square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-            let inverse = L::splat(1.0) / square.at_least(1e-6).sqrt();
-            (inverse + inverse - L::splat(2.0)).at_least(0.0)
-        };
-        let a = (L::splat(self.alpha_squared.unwrap_or(LEAST_OWN)) + spread).at_most(1.0);
+        let a = spread_square(self.alpha_squared, normal, is_base);
         match &self.shine {
             Shine::Sun(to_light) => {
                 let shown = lobes(normal, [to_light.to_array().map(L::splat), to_eye], a);
@@ -120,6 +113,23 @@ impl Gloss {
 /// Least `a^2` that is told from lengths, which are rounded.
 const LEAST_OWN: f32 = 1e-4;
 
+/// `a^2` of a roughness, if texels do not have their own, and of how short their normals are.
+#[inline(always)]
+pub(crate) fn spread_square<L: Lanes>(
+    alpha_squared: Option<f32>,
+    normal: [L; 3],
+    is_base: bool,
+) -> L {
+    let spread = if is_base && alpha_squared.is_some() {
+        L::splat(0.0)
+    } else {
+        let square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+        let inverse = L::splat(1.0) / square.at_least(1e-6).sqrt();
+        (inverse + inverse - L::splat(2.0)).at_least(0.0)
+    };
+    (L::splat(alpha_squared.unwrap_or(LEAST_OWN)) + spread).at_most(1.0)
+}
+
 /// The length of a normal that stands for a roughness, so that a mean of normals of some roughness
 /// is as rough as they are and their directions differ: `a^2 = 2 (1 - |n|) / |n|`.
 pub fn rough_length(roughness: f32) -> f32 {
@@ -131,7 +141,7 @@ pub fn rough_length(roughness: f32) -> f32 {
 /// and an `a^2` up to 1. A normal that faces away from the eye shows as
 /// if the eye stood just above its plane, as in the truth.
 #[inline(always)]
-fn lobes<L: Lanes>(normal: [L; 3], [to_light, to_eye]: [[L; 3]; 2], a: L) -> L {
+pub(crate) fn lobes<L: Lanes>(normal: [L; 3], [to_light, to_eye]: [[L; 3]; 2], a: L) -> L {
     let dot = |a: [L; 3], b: [L; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let one = L::splat(1.0);
     let inverse = one / dot(normal, normal).at_least(1e-6).sqrt();

@@ -32,13 +32,15 @@ pub struct LocalLight {
     pub is_point: bool,
 }
 
-/// What pixels reflect of suns and of the sky, where it was seen texel by texel.
+/// What a pixel reflects of lights and of the sky, where it was seen texel by texel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SeenGloss {
-    /// Of all suns together.
-    pub suns: Option<Vec3>,
-    /// Of the sky.
-    pub sky: Option<Vec3>,
+    /// What that is, linear RGB.
+    pub color: Vec3,
+    /// Whether all suns are in it, all points, and the sky.
+    pub has_suns: bool,
+    pub has_points: bool,
+    pub has_sky: bool,
 }
 
 /// What light does with a surface: what the diffuse layer shows, and what comes on top of it.
@@ -119,13 +121,13 @@ impl LocalLights {
         let n_v = normal.dot(self.to_eye).max(LEAST_COSINE);
         let fresnel = Fresnel::new(finish, base);
         let of_sky = reflectance.at(n_v, alpha_squared.sqrt());
-        let mut added = finish.emissive;
-        added += match seen.sky {
-            Some(light) => light * self.occlusion,
-            None => fresnel.of_sky(of_sky) * self.mirrored(normal, alpha_squared, sky),
-        };
-        added += seen.suns.unwrap_or(Vec3::ZERO);
-        for light in self.lights.iter().filter(|light| light.is_point || seen.suns.is_none()) {
+        let mut added = finish.emissive + seen.color;
+        if !seen.has_sky {
+            added += fresnel.of_sky(of_sky) * self.mirrored(normal, alpha_squared, sky);
+        }
+        let is_seen =
+            |light: &LocalLight| if light.is_point { seen.has_points } else { seen.has_suns };
+        for light in self.lights.iter().filter(|light| !is_seen(light)) {
             let half = (light.to_light + self.to_eye).normalize_or_zero();
             let share = fresnel.at(half.dot(self.to_eye));
             let n_l = normal.dot(light.to_light);

@@ -9,20 +9,19 @@ use super::bake::TextureFrame;
 use super::curved::LinearSky;
 use super::disc::spiral;
 use super::openings::Openings;
-use super::reflection::{LEAST_COSINE, Reflectance, alpha};
+use super::reflection::Reflectance;
+use super::sky_shares::SkyShares;
 use super::surface_point::unit_axes;
 use crate::scene::Sky;
 use crate::simd::Lanes;
-use glam::{DMat4, DVec4, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 use std::sync::Arc;
 
 /// A sky over a flat piece of a rough surface, in the frame of its texture.
 #[derive(Clone, Debug)]
 pub struct SkyLobe {
     sky: LocalSky,
-    /// What is reflected of a sky of 1, `F0 x + F90 y`: `x` and `F90 y` by 1, `m`, `m^2` and `m^5`, with `m`
-    /// one minus the cosine to the eye.
-    shares: [[f32; 4]; 2],
+    shares: SkyShares,
     openings: Arc<Openings>,
 }
 
@@ -40,13 +39,6 @@ struct LocalSky {
     share_of_wide: [f32; 2],
 }
 
-/// How wide the part of a lobe within a cone is spread over the angle to its edge, for each `a`. The
-/// distribution of a slope says 2; 1.5 is measured, on metal of roughness 0.3 and 0.6 under skies.
-const EDGE: f32 = 1.5;
-
-/// How far what a lobe shows moves toward the middle of the cone where the relief hides the rest of it.
-const TOWARD_OPEN: f32 = 0.5;
-
 /// The share of what lies all around in what a lobe shows of a gradient, for each `a`.
 const WIDE: f32 = 1.5;
 
@@ -54,12 +46,11 @@ impl SkyLobe {
     /// Of a sky on a surface of some roughness, 0 to 1, that reflects so much of light along it.
     pub fn new(
         (sky, frame): (&Sky, &TextureFrame),
-        (roughness, grazing): (f32, f32),
+        finish: (f32, f32),
         reflectance: &Reflectance,
         openings: Arc<Openings>,
     ) -> Self {
-        let [x, y] = shares(alpha(roughness), reflectance);
-        let shares = [x, y.map(|term| term * grazing)];
+        let shares = SkyShares::new(finish, reflectance);
         Self { sky: LocalSky::new(sky, frame), shares, openings }
     }
 
@@ -74,41 +65,12 @@ impl SkyLobe {
     pub fn shown<L: Lanes>(
         &self,
         (straight, full): ([L; 3], f32),
-        [normal, opening, to_eye]: [[L; 3]; 3],
+        directions: [[L; 3]; 3],
         a: L,
     ) -> [L; 3] {
-        let one = L::splat(1.0);
         let alpha = a.sqrt();
-        let inverse = one / dot(normal, normal).at_least(1e-6).sqrt();
-        let normal = normal.map(|c| c * inverse);
-        let n_v = dot(normal, to_eye).at_least(LEAST_COSINE).at_most(1.0);
-        let reflected = [0, 1, 2].map(|i| normal[i] * (n_v + n_v) - to_eye[i]);
-        // Find by how far the lobe's middle is within the cone, and above the polygon, under which all is
-        // relief.
-        let square_of_sine = dot(opening, opening).sqrt().at_least(1e-3).at_most(1.0);
-        let by_sine = one / square_of_sine.sqrt();
-        let by_square = by_sine * by_sine;
-        let in_cone = dot(reflected, opening) * by_square - (one - square_of_sine).sqrt();
-        let in_cone = in_cone * by_sine;
-        let within = in_cone - (in_cone - reflected[2]).at_least(0.0);
-        // The part of the lobe there is `(1 + d / (d^2 + w^2)^(1/2)) / 2`. What goes into the texel's own
-        // plane is not among what it reflects.
-        let width = alpha * L::splat(EDGE);
-        let length = |distance: L| (distance * distance + width * width).sqrt();
-        let (to_edge, to_plane) = (length(within), length(n_v));
-        let part = (to_edge + within) * to_plane / (to_edge * (to_plane + n_v));
-        let part = part.at_most(1.0);
-        let hidden = (one - part) * by_square * L::splat(TOWARD_OPEN);
-        let [x, y, z] = [0, 1, 2].map(|i| reflected[i] + opening[i] * hidden);
-        // And what it shows.
-        let m = one - n_v;
-        let m2 = m * m;
-        let m5 = m2 * m2 * m;
-        let light = self.sky.at([x, y, z.at_least(0.0)], alpha);
-        let [x, y] = self.shares.map(|terms| {
-            let [all, of_m, of_m2, of_m5] = terms.map(L::splat);
-            (all + of_m * m + of_m2 * m2 + of_m5 * m5).at_least(0.0) * part
-        });
+        let ([x, y], direction) = self.shares.lobe(directions, alpha);
+        let light = self.sky.at(direction, alpha);
         let y = y * L::splat(full);
         [0, 1, 2].map(|c| (straight[c] * x + y) * light[c].at_least(0.0))
     }
@@ -179,27 +141,6 @@ fn wide(sky: &Sky, normal: Vec3) -> LinearSky {
     })
 }
 
-/// `x` and `y` of [`SkyLobe::shares`]: least squares over the cosine to the eye, within 0.02.
-fn shares(alpha: f32, reflectance: &Reflectance) -> [[f32; 4]; 2] {
-    const POINTS: usize = 32;
-    let basis = |i: usize| {
-        let m = i as f64 / POINTS as f64;
-        DVec4::new(1.0, m, m * m, m * m * m * m * m)
-    };
-    let (mut squares, mut products) = (DMat4::ZERO, [DVec4::ZERO; 2]);
-    for i in 0..POINTS {
-        let at = basis(i);
-        squares += DMat4::from_cols_array_2d(&at.to_array().map(|c| (at * c).to_array()));
-        let shares = reflectance.at(1.0 - at.y as f32, alpha);
-        products.iter_mut().zip(shares).for_each(|(sum, share)| *sum += at * f64::from(share));
-    }
-    let inverse = squares.inverse();
-    let found = products.map(|product| inverse * product);
-    // No surface reflects more than all.
-    let most = (0..=POINTS).map(|i| (found[0] + found[1]).dot(basis(i))).fold(1.0, f64::max);
-    found.map(|terms| (terms / most).as_vec4().to_array())
-}
-
 #[inline(always)]
 fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -208,6 +149,7 @@ fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::light::reflection::alpha;
     use crate::simd::PixelLanes;
     use crate::texture::{Surface, SurfaceMaps};
 

@@ -19,6 +19,10 @@ impl Shader<'_> {
         scratch: &mut ShadeScratch,
         colors: &mut Vec<[PixelLanes; 3]>,
     ) {
+        if ground.is_all_metal() {
+            colors.resize(colors.len() + block.num_pairs(), [PixelLanes::ZERO; 3]);
+            return;
+        }
         // Find the lights that reach all of the block, and those that reach a part.
         let (mut whole, mut parts) = (all, Vec::new());
         for (i, hidden) in hidden.0.iter().enumerate() {
@@ -43,7 +47,7 @@ impl Shader<'_> {
         let mut part = Vec::new();
         for (i, hidden) in parts {
             part.clear();
-            let light = Swept { lights: 1 << i, has_sky: false };
+            let light = Swept { lights: 1 << i, has_sky: false, ..all };
             self.textured(&Ground { swept: Some(light), ..*ground }, block, scratch, &mut part);
             for ((color, part), hidden) in colors[start..].iter_mut().zip(&part).zip(hidden) {
                 (0..3).for_each(|c| color[c] += part[c] * (PixelLanes::ONE - *hidden));

@@ -3,10 +3,12 @@
 use super::ground::{Ground, Swept};
 use super::prepared::PreparedScene;
 use crate::footprint::Footprints;
-use crate::light::{Curved, CurvedSun, Disc, FrameLanes, LinearSky, Slant, Ways};
+use crate::light::{
+    Curved, CurvedSun, Disc, FrameLanes, LinearSky, Luster, Shine, Slant, Vectors, Ways,
+};
 use crate::raster::{LitLanes, QuadBlock};
 use crate::relief::displacement;
-use crate::scene::{Light, Scene};
+use crate::scene::{Eye, Light, Scene};
 use crate::simd::PixelLanes;
 use glam::Vec3;
 use std::ops::Range;
@@ -19,6 +21,8 @@ pub(super) struct CurvedLights {
     places: Vec<Vec3>,
     suns: Vec<CurvedSun>,
     points: Vec<Vec3>,
+    /// Where highlights are asked for: see [`Shine`].
+    shine: Option<(Eye, Luster)>,
     /// On the pairs.
     shone: Shone,
 }
@@ -30,6 +34,7 @@ pub(super) struct Shone {
     frames: Vec<FrameLanes>,
     slants: Vec<Slant>,
     ways: Vec<Ways>,
+    to_eyes: Vec<Vectors>,
 }
 
 impl CurvedLights {
@@ -65,6 +70,7 @@ impl CurvedLights {
             discs: discs.iter().map(|(disc, _)| *disc).collect(),
             points: places.iter().map(|(_, intensity)| *intensity).collect(),
             places: places.iter().map(|(place, _)| *place).collect(),
+            shine: swept.gloss.map(|luster| (scene.camera.viewpoint(), luster)),
             shone: Shone::default(),
         };
         let mut shone = Shone::default();
@@ -94,6 +100,7 @@ impl CurvedLights {
             let ray = (displacement(), self.relief_depth);
             shone.ways.extend(self.places.iter().map(|at| frame.ways(position, *at, ray)));
         }
+        shone.to_eyes.extend(self.shine.map(|(eye, _)| frame.to_eye(position, eye)));
         shone.frames.push(frame);
         frame
     }
@@ -127,7 +134,9 @@ impl CurvedLights {
 
     /// All of them on other places.
     pub(super) fn of<'a>(&'a self, shone: &'a Shone) -> Curved<'a> {
-        let (Self { suns, points, .. }, Shone { skies, frames, slants, ways }) = (self, shone);
-        Curved { suns, skies, frames, slants, points, ways }
+        let Self { suns, points, shine, .. } = self;
+        let Shone { skies, frames, slants, ways, to_eyes } = shone;
+        let shine = shine.map(|(_, luster)| Shine { luster, to_eyes });
+        Curved { suns, skies, frames, slants, points, ways, shine }
     }
 }

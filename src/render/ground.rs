@@ -1,11 +1,11 @@
 //! What pixels lie on: a material with its texture, and the polygon at places of the screen.
 
-use super::mapped::Glow;
+use super::mapped::{Glow, MappedGloss};
 use super::open_sky::OpenSky;
 use super::outlines::Outlines;
 use crate::filter::Prepared;
 use crate::footprint::{Footprint, Footprints};
-use crate::light::{LocalLights, SurfacePoint};
+use crate::light::{LocalLights, Luster, SurfacePoint};
 use crate::raster::{AttributePlanes, LitPlanes, Plane, QuadPair};
 use crate::scene::{Finish, Material};
 use crate::shell::ReliefHit;
@@ -31,6 +31,8 @@ pub(crate) struct Ground<'a> {
     pub(crate) baked: Option<LitPiece<'a>>,
     /// What it sends out by a texture, in a lit frame.
     pub(crate) glow: Option<&'a Glow>,
+    /// What it reflects, where highlights of some lights are swept as diffuse light is.
+    pub(crate) gloss: Option<&'a MappedGloss>,
 }
 
 /// Lights of a scene.
@@ -40,6 +42,8 @@ pub(crate) struct Swept {
     pub(crate) lights: u64,
     /// Whether the sky is one of them.
     pub(crate) has_sky: bool,
+    /// Of a rough surface whose highlights are asked for, not diffuse light.
+    pub(crate) gloss: Option<Luster>,
 }
 
 /// A side of a flat piece whose light is baked.
@@ -110,6 +114,11 @@ impl Ground<'_> {
     pub(super) fn finish(&self, pixel: &Footprint) -> Finish {
         let finish = self.material.finish(|map| map.over(pixel.hit, [pixel.dx, pixel.dy]));
         Finish { emissive: self.emissive(), ..finish }
+    }
+
+    /// Whether no place of it has a diffuse layer.
+    pub(super) fn is_all_metal(&self) -> bool {
+        self.material.metallic == 1.0 && self.material.maps.metallic.is_none()
     }
 
     /// What it sends out without a texture.

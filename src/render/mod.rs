@@ -16,6 +16,7 @@ mod exact;
 mod gloss;
 mod ground;
 mod hidden_lights;
+mod highlights;
 mod lit;
 mod mapped;
 mod open_sky;

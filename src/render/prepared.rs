@@ -143,7 +143,13 @@ impl PreparedScene {
             if asks {
                 let all = scene.meshes.iter().map(|mesh| mesh.material).filter(|_| self.has_points);
                 for material in curved.into_iter().chain(all) {
-                    self.of_material(material, settings.parallax).map(Prepared::horizons);
+                    let unlit = self.of_material(material, settings.parallax);
+                    unlit.map(Prepared::horizons);
+                    let mapped = self.mapped.as_ref().and_then(|(_, all)| all[material].as_ref());
+                    if let (Some(mapped), Some(unlit)) = (mapped, unlit) {
+                        let material = &scene.materials[material];
+                        mapped.make_glossy((material, unlit), (&scene.sky, self.reflectance()));
+                    }
                 }
             }
             if self.has_points {
@@ -166,7 +172,8 @@ impl PreparedScene {
     /// What textures of materials' numbers are drawn by.
     fn mapped(&self, scene: &Scene, has_relief: bool) -> Vec<Option<Mapped>> {
         let of = |(i, material): (usize, &Material)| {
-            let unlit = self.of_material(i, has_relief).filter(|_| !material.maps.is_empty())?;
+            let is_plain = material.maps.is_empty() && material.is_matte();
+            let unlit = self.of_material(i, has_relief).filter(|_| !is_plain)?;
             Some(Mapped::new(material, unlit))
         };
         scene.materials.iter().enumerate().map(of).collect()
@@ -280,11 +287,12 @@ impl PreparedScene {
             && settings.filter.traits().asks_for_lights
             && prepared.field().is_some()
             && prepared.surface().has_normals();
-        let swept = is_swept.then_some(Swept { lights: u64::MAX, has_sky: true });
+        let swept = is_swept.then_some(Swept { lights: u64::MAX, has_sky: true, gloss: None });
         let diffuse = mapped.and_then(|mapped| mapped.diffuse.as_ref()).unwrap_or(unlit);
         let prepared = if is_swept { diffuse } else { prepared };
         let glow = mapped.and_then(|mapped| mapped.glow.as_ref());
-        Some(Ground { material, prepared, unlit, diffuse, is_lit, swept, baked, glow })
+        let gloss = mapped.and_then(|mapped| mapped.gloss.get());
+        Some(Ground { material, prepared, unlit, diffuse, is_lit, swept, baked, glow, gloss })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

@@ -12,6 +12,7 @@
 
 use super::ground::{Ground, in_lanes};
 use super::hidden_lights::HiddenLights;
+use super::highlights::SweptGloss;
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
 use crate::filter::{Batch, Filtered, Scratch};
 use crate::footprint::Footprints;
@@ -42,16 +43,18 @@ impl Shader<'_> {
             }
             return;
         }
+        let swept = self.swept_gloss(ground, hidden, block, scratch);
+        let swept = swept.as_ref();
         for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
             let pairs = first..block.num_pairs().min(first + PAIRS_AT_ONCE);
             let colors = &mut colors[pairs.clone()];
-            self.reflect_pairs((ground, hidden), (block, pairs), scratch, colors);
+            self.reflect_pairs((ground, hidden, swept), (block, pairs), scratch, colors);
         }
     }
 
     fn reflect_pairs(
         &self,
-        (ground, hidden): (&Ground, &HiddenLights),
+        (ground, hidden, swept): (&Ground, &HiddenLights, Option<&SweptGloss>),
         (block, pairs): (&QuadBlock, Range<usize>),
         scratch: &mut ShadeScratch,
         colors: &mut [[PixelLanes; 3]],
@@ -71,7 +74,13 @@ impl Shader<'_> {
             pixels.covered().map(|lane| (pixels.lane(lane), filtered.lane(lane)))
         });
         let places: Vec<_> = places.map(|(pixel, texel)| (ground.finish(&pixel), texel)).collect();
-        let seen = self.seen_gloss(ground, (block, pairs), (lights, &places), (filter, footprints));
+        let first = pairs.start;
+        let mut seen =
+            self.seen_gloss(ground, (block, pairs), (lights, &places), (filter, footprints));
+        if let Some(swept) = swept {
+            seen.resize(lights.len(), SeenGloss::default());
+            swept.add_to(&mut seen, footprints, first);
+        }
         // With a texture of metal the colours are those of the diffuse layer already.
         let has_layer = ground.material.maps.metallic.is_some();
         let dielectric = if has_layer { 1.0 } else { 1.0 - ground.material.metallic };
@@ -122,10 +131,11 @@ impl Shader<'_> {
             {
                 let seen = Vec3::from(seen.color) * scale;
                 if let Some(sun) = light {
-                    let shown = lights.shown(*sun, &Fresnel::new(finish, mean));
-                    *sum.suns.get_or_insert_default() += seen * shown;
+                    sum.color += seen * lights.shown(*sun, &Fresnel::new(finish, mean));
+                    sum.has_suns = true;
                 } else {
-                    sum.sky = Some(seen);
+                    sum.color += seen * lights.occlusion;
+                    sum.has_sky = true;
                 }
             }
         }

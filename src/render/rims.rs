@@ -13,7 +13,7 @@ use super::curved_lights::CurvedLights;
 use super::ground::{Ground, in_lanes, pixel_center};
 use super::outlines::Outlines;
 use super::strays::strays;
-use crate::filter::{Filtered, SampleOffsets, Samples, light_at, points};
+use crate::filter::{Filtered, SampleOffsets, Samples, lit_at, points};
 use crate::footprint::{Footprint, Footprints};
 use crate::light::SurfacePoint;
 use crate::raster::{AttributePlanes, LitLanes, QuadBlock};
@@ -114,12 +114,13 @@ impl<'a> Rims<'a> {
             for (lane, hit) in hits.iter().enumerate() {
                 let Some(hit) = hit else { continue };
                 let place = hit.place.uv.map(|c| c as f32);
-                let mut color =
-                    Vec3::from(points::trilinear(prepared.surface(), place, size).color);
+                let texel = points::trilinear(prepared.surface(), place, size);
+                let mut color = Vec3::from(texel.color);
                 if let Some((lights, shone, horizons)) = &lights {
-                    let (at, curved) = ((place, hit.place.depth as f32), lights.of(shone));
-                    let light = light_at((&curved, lane), (horizons, prepared.surface()), at);
-                    color *= Vec3::from(light);
+                    let at = (place, hit.place.depth as f32, &texel);
+                    let curved = lights.of(shone);
+                    let lit = lit_at((&curved, lane), (horizons, prepared.surface()), at);
+                    color = Vec3::from(lit);
                 }
                 (sum, num_hits) = (sum + color, num_hits + 1.0);
             }

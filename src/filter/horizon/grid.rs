@@ -10,6 +10,7 @@
 use super::glossy::PatchGloss;
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
+use super::shine::PatchShine;
 use super::sweep_frame::SweepFrame;
 use crate::simd::LineLanes;
 use crate::texture::Rows;
@@ -60,6 +61,8 @@ pub(super) enum Shown<'a> {
     Colors,
     /// What shines on them, where a curved surface is lit.
     Light(&'a PatchLight<'a>),
+    /// What they reflect of lights there.
+    Shine(&'a PatchShine<'a>),
     /// What they reflect of a sun or of the sky.
     Gloss(&'a PatchGloss<'a>),
 }
@@ -71,6 +74,7 @@ impl<'a> Shown<'a> {
         match self {
             Self::Colors => None,
             Self::Light(light) => Some(light.rows),
+            Self::Shine(shine) => Some(shine.light.rows),
             Self::Gloss(gloss) => gloss.openings,
         }
     }

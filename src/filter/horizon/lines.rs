@@ -11,6 +11,7 @@
 
 use super::glossy::PatchGloss;
 use super::grid::{Grid, Shown};
+use super::shine::PatchShine;
 use super::sweep_frame::SweepFrame;
 use super::walk::Texels;
 use crate::relief::SEEN_DEPTH;
@@ -227,6 +228,11 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
             values[..3].copy_from_slice(&self.highlights(gloss, steps, i, &between));
             return Texels { values, place };
         }
+        if let (true, Shown::Shine(shine)) = (LIT, self.grid.shown) {
+            let mut values = [LineLanes::ZERO; CHANNELS];
+            values[..3].copy_from_slice(&self.shining(shine, steps, i, &between));
+            return Texels { values, place };
+        }
         let (mut values, height) = self.step_values(steps, i, &between);
         if let (true, Shown::Light(light)) = (LIT, self.grid.shown) {
             let p = place * self.grid.step + self.grid.begin;
@@ -250,6 +256,21 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         let p = steps.places[i] * self.grid.step + self.grid.begin;
         let at = [self.others + self.xi, p];
         gloss.at([[r, g, b], [x, y, z]], at, (steps.others[i], between))
+    }
+
+    /// The same on a curved surface.
+    #[inline(never)]
+    fn shining(
+        &self,
+        shine: &PatchShine,
+        steps: &Steps,
+        i: usize,
+        between: &Between,
+    ) -> [LineLanes; 3] {
+        let ([r, g, b, x, y, z], height) = self.step_values(steps, i, between);
+        let p = steps.places[i] * self.grid.step + self.grid.begin;
+        let at = [self.others + self.xi, p, height];
+        shine.at((steps.others[i], between), [[r, g, b], [x, y, z]], at, steps.q[i])
     }
 
     /// [`Self::values`] of a step: of its row, or of both rows beside it.

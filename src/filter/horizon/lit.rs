@@ -8,11 +8,9 @@
 use super::fit::{Fit, Linear, azimuth};
 use super::near_light::PatchPoint;
 use super::pixels::PixelOnLines;
-use crate::light::{
-    Curved, CurvedSun, Horizons, LinearSky, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE, Slant,
-};
+use crate::light::{Curved, CurvedSun, LinearSky, NORMAL_PLANE, NUM_AZIMUTHS, SKY_PLANE, Slant};
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, u32x16};
-use crate::texture::{FULL_F32, Rows, Surface, near_origin};
+use crate::texture::Rows;
 use glam::Vec3;
 
 /// The lights of a patch.
@@ -21,15 +19,15 @@ pub(super) struct PatchLight<'a> {
     /// The horizons of the patch's level.
     pub(super) rows: &'a Rows,
     /// The `xi` and `q` around which numbers are linear.
-    middle: [f32; 2],
-    suns: Vec<PatchSun>,
-    points: Vec<PatchPoint>,
-    sky: Option<PatchSky>,
+    pub(super) middle: [f32; 2],
+    pub(super) suns: Vec<PatchSun>,
+    pub(super) points: Vec<PatchPoint>,
+    pub(super) sky: Option<PatchSky>,
 }
 
 /// What the sky sends, linear in the direction.
 #[derive(Clone, Copy, Debug)]
-struct PatchSky {
+pub(super) struct PatchSky {
     constant: [f32; 3],
     /// Along u, along v and off the surface; `None` where it is the same from everywhere.
     slopes: Option<[[f32; 3]; 3]>,
@@ -55,12 +53,28 @@ impl PatchSky {
         let slopes = local.slopes.map(|slope| slope.to_array());
         Self { constant: local.constant.to_array(), slopes: (!is_even).then_some(slopes), gain }
     }
+
+    /// What comes from directions.
+    #[inline(always)]
+    pub(super) fn from(
+        &self,
+        [x, y, z]: [LineLanes; 3],
+        [xi, q]: [LineLanes; 2],
+    ) -> [LineLanes; 3] {
+        let gain = self.gain.at(xi, q).fast_max(LineLanes::ZERO);
+        [0, 1, 2].map(|c| {
+            let slopes = self.slopes.map(|[u, v, up]| x * u[c] + y * v[c] + z * up[c]);
+            let sum = slopes.unwrap_or(LineLanes::ZERO) + self.constant[c];
+            sum.fast_max(LineLanes::ZERO) * gain
+        })
+    }
 }
 
+/// A sun over a patch.
 #[derive(Clone, Copy, Debug)]
-struct PatchSun {
-    intensity: [f32; 3],
-    to_light: [Linear; 3],
+pub(super) struct PatchSun {
+    pub(super) intensity: [f32; 3],
+    pub(super) to_light: [Linear; 3],
     height: Linear,
     /// 1 over how far its disc reaches in height.
     inverse_width: f32,
@@ -121,28 +135,29 @@ impl PatchSun {
             part,
         }
     }
-}
 
-/// What a white surface shows of the lights of a curved one at a place of its texture, in repeats and of
-/// a depth, as a lane of their first vector of pixels stands.
-pub(crate) fn light_at(
-    (curved, lane): (&Curved, usize),
-    (horizons, surface): (&Horizons, &Surface),
-    (place, depth): ([f32; 2], f32),
-) -> [f32; 3] {
-    let here = [PixelOnLines { half_width: 1.0, half_height: 1.0, ..PixelOnLines::default() }];
-    let rows = horizons.rows(0, false);
-    let light = PatchLight::new(curved, rows, &[lane as u8], &here);
-    let [x, y] = surface.base().in_texels(near_origin(place, surface.wrap())).map(|c| c - 0.5);
-    let [column, row] = [x, y].map(f32::floor);
-    let between = Between::new(LineLanes::splat(x - column));
-    let height = LineLanes::splat((1.0 - depth) * (FULL_F32 * BETWEEN_SCALE));
-    let [near, far] = [0, 1].map(|i| {
-        let start = rows.start_at(column as i32, row as i32 + i);
-        let shown = light.at(start, &between, [LineLanes::ZERO, LineLanes::ZERO, height], 0.0);
-        shown.map(|lanes| lanes.as_array()[0])
-    });
-    [0, 1, 2].map(|c| near[c] + (far[c] - near[c]) * (y - row))
+    /// The part of its disc that texels see over the relief.
+    #[inline(always)]
+    pub(super) fn lit_part(
+        &self,
+        (rows, start, between): (&Rows, usize, &Between),
+        [xi, q]: [LineLanes; 2],
+    ) -> LineLanes {
+        let (words, stride) = (rows.words(), rows.stride());
+        let [(plane, shift), (next_plane, next_shift)] = self.azimuths;
+        let word = between.words_at(words, start + plane * stride);
+        let next = if plane == next_plane {
+            word
+        } else {
+            between.words_at(words, start + next_plane * stride)
+        };
+        let a = between.bits_of(word, shift, 0xff);
+        let b = between.bits_of(next, next_shift, 0xff);
+        let part = self.part.at(xi, q).fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
+        let root = (a + (b - a) * part) * (1.0 / (255.0 * BETWEEN_SCALE));
+        let lit = (self.height.at(xi, q) - root * root) * self.inverse_width + 0.5;
+        lit.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE)
+    }
 }
 
 impl<'a> PatchLight<'a> {
@@ -166,6 +181,22 @@ impl<'a> PatchLight<'a> {
         let point = |point: usize| PatchPoint::new(curved, point, picks, &fit);
         let points = (0..curved.points.len()).map(point).collect();
         Self { rows, middle: fit.middle, suns, points, sky }
+    }
+
+    /// Whether nothing shines there.
+    pub(super) fn is_dark(&self) -> bool {
+        self.suns.is_empty() && self.points.is_empty() && self.sky.is_none()
+    }
+
+    /// `t0` and `t` of texels whose words of horizons begin at a place of the rows.
+    #[inline(always)]
+    pub(super) fn sky_seen(&self, start: usize, between: &Between) -> (LineLanes, [LineLanes; 3]) {
+        let [normals, sky] = [NORMAL_PLANE, SKY_PLANE]
+            .map(|plane| between.words_at(self.rows.words(), start + plane * self.rows.stride()));
+        let unit = 1.0 / (255.0 * BETWEEN_SCALE);
+        let part = |word: [u32x16; 2], i: u32| between.bits_of(word, 8 * i, 0xff) * unit;
+        let signed = |i: u32| part(sky, i) * 2.0 - 1.0;
+        (part(normals, 3), [signed(0), signed(1), part(sky, 2)])
     }
 
     /// What a white surface shows of the lights where lines cross row `q`, whose words of horizons
@@ -208,19 +239,7 @@ impl<'a> PatchLight<'a> {
             let n_l = normal[0] * l0 + normal[1] * l1 + normal[2] * l2;
             // No cosine is above 1, whatever the fit makes of places beyond its pixels.
             let n_l = n_l.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
-            let [(plane, shift), (next_plane, next_shift)] = sun.azimuths;
-            let word = between.words_at(words, start + plane * stride);
-            let next = if plane == next_plane {
-                word
-            } else {
-                between.words_at(words, start + next_plane * stride)
-            };
-            let a = between.bits_of(word, shift, 0xff);
-            let b = between.bits_of(next, next_shift, 0xff);
-            let part = sun.part.at(xi, q).fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
-            let root = (a + (b - a) * part) * unit;
-            let lit = (sun.height.at(xi, q) - root * root) * sun.inverse_width + 0.5;
-            let lit = n_l * lit.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
+            let lit = n_l * sun.lit_part((self.rows, start, between), [xi, q]);
             (0..3).for_each(|c| sums[c] += lit * sun.intensity[c]);
         }
         for point in &self.points {

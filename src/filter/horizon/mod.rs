@@ -32,12 +32,14 @@ mod lit;
 mod near_light;
 mod patch;
 mod pixels;
+mod place;
 mod plan;
+mod shine;
 mod sweep;
 mod sweep_frame;
 mod walk;
 
-pub(crate) use lit::light_at;
+pub(crate) use place::lit_at;
 
 use super::batch::{Batch, Filtered, LevelChoice, Work};
 use super::far_field::FarField;

@@ -22,7 +22,7 @@ const WIDTH: f32 = 1.0 / 128.0;
 /// A point over a patch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PatchPoint {
-    intensity: [f32; 3],
+    pub(super) intensity: [f32; 3],
     least: f32,
     /// See [`Ways`].
     to_light: [Linear; 3],
@@ -83,23 +83,34 @@ impl PatchPoint {
     #[inline(never)]
     pub(super) fn at(
         &self,
-        (rows, start, between): (&Rows, usize, &Between),
+        read: (&Rows, usize, &Between),
         normal: [LineLanes; 3],
-        [xi, p, height]: [LineLanes; 3],
+        at: [LineLanes; 3],
     ) -> [LineLanes; 3] {
+        let ([x, y, z], square, lit) = self.reaching(read, at);
+        let n_l = normal[0] * x + normal[1] * y + normal[2] * z;
+        let falloff = n_l.fast_max(LineLanes::ZERO) / (square * square.sqrt());
+        let lit = falloff * lit;
+        self.intensity.map(|intensity| lit * intensity)
+    }
+
+    /// The way from texels to it, the square of its length, and whether it gets there over the relief.
+    #[inline(always)]
+    pub(super) fn reaching(
+        &self,
+        (rows, start, between): (&Rows, usize, &Between),
+        [xi, p, height]: [LineLanes; 3],
+    ) -> ([LineLanes; 3], LineLanes, LineLanes) {
         let depth = LineLanes::ONE - height * (1.0 / (FULL_F32 * BETWEEN_SCALE));
         let way = |of: &[Linear; 3], down: &[f32; 3], c: usize| of[c].at(xi, p) - depth * down[c];
         let [x, y, z] = [0, 1, 2].map(|c| way(&self.to_light, &self.down[0], c));
         let square = (x * x + y * y + z * z).fast_max(LineLanes::splat(self.least));
-        let n_l = normal[0] * x + normal[1] * y + normal[2] * z;
-        let falloff = n_l.fast_max(LineLanes::ZERO) / (square * square.sqrt());
         let [u, v, up] = [0, 1, 2].map(|c| way(&self.along, &self.down[1], c));
         let length = (u * u + v * v).sqrt();
         let height = up / (up.abs() + length).fast_max(LineLanes::splat(f32::MIN_POSITIVE));
         let root = self.root((rows, start, between), [u, v]);
         let lit = (height - root * root) * (1.0 / WIDTH) + 0.5;
-        let lit = falloff * lit.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
-        self.intensity.map(|intensity| lit * intensity)
+        ([x, y, z], square, lit.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE))
     }
 
     /// The root of the horizon's height towards the light.

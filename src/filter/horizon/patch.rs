@@ -11,6 +11,7 @@ use super::kernel::Totals;
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::plan::{Extent, Plan, WIDEST, in_whole_groups};
+use super::shine::PatchShine;
 use super::sweep_frame::{SweepFrame, means};
 use crate::filter::points;
 use crate::footprint::levels::{SweepExtent, for_sweep};
@@ -18,7 +19,7 @@ use crate::footprint::{Ellipses, Footprints};
 use crate::light::{Curved, Gloss, Horizons, LocalLights};
 use crate::relief::LevelLoss;
 use crate::settings::Horizon;
-use crate::simd::{PixelLanes, bits_mask};
+use crate::simd::{BETWEEN_SCALE, PixelLanes, bits_mask};
 use crate::texture::{Surface, Texel};
 use glam::Vec3;
 
@@ -236,7 +237,17 @@ impl<'a> Patches<'a> {
         } else if let Some((curved, horizons)) = self.light {
             let rows = horizons.rows(plan.level, plan.frame.is_turned);
             let light = PatchLight::new(curved, rows, picks, pixels);
-            plan.run::<3, true>(unlit, pixels, (&[], Shown::Light(&light)), totals)
+            if light.is_dark() {
+                found.fill(Texel::default());
+                return 0;
+            }
+            if let Some(shine) = &curved.shine {
+                let unit = (BETWEEN_SCALE, plan.level == 0);
+                let shine = PatchShine::new(light, shine, (picks, pixels), unit);
+                plan.run::<3, true>(unlit, pixels, (&[], Shown::Shine(&shine)), totals)
+            } else {
+                plan.run::<3, true>(unlit, pixels, (&[], Shown::Light(&light)), totals)
+            }
         } else if let Some(gloss) = self.gloss {
             let rows = (plan.level, plan.frame.is_turned);
             let gloss = PatchGloss::new(gloss, to_eyes, pixels, rows);

@@ -1,0 +1,41 @@
+//! Light at single places of a curved surface, for rays that are followed one by one.
+
+use super::lit::PatchLight;
+use super::pixels::PixelOnLines;
+use super::shine::PatchShine;
+use crate::light::{Curved, Horizons};
+use crate::simd::{BETWEEN_SCALE, Between, LineLanes};
+use crate::texture::{FULL_F32, Surface, Texel, near_origin};
+
+/// What a texel of a curved surface shows of the lights, or reflects of them where that is asked for, at a
+/// place in repeats and of a depth, as a lane of their first vector of pixels stands.
+pub(crate) fn lit_at(
+    (curved, lane): (&Curved, usize),
+    (horizons, surface): (&Horizons, &Surface),
+    (place, depth, texel): ([f32; 2], f32, &Texel),
+) -> [f32; 3] {
+    let here = [PixelOnLines { half_width: 1.0, half_height: 1.0, ..PixelOnLines::default() }];
+    let rows = horizons.rows(0, false);
+    let picks = [lane as u8];
+    let light = PatchLight::new(curved, rows, &picks, &here);
+    let shine = curved
+        .shine
+        .as_ref()
+        .map(|shine| PatchShine::new(light.clone(), shine, (&picks, &here), (1.0, false)));
+    let [x, y] = surface.base().in_texels(near_origin(place, surface.wrap())).map(|c| c - 0.5);
+    let [column, row] = [x, y].map(f32::floor);
+    let between = Between::new(LineLanes::splat(x - column));
+    let height = LineLanes::splat((1.0 - depth) * (FULL_F32 * BETWEEN_SCALE));
+    let at = [LineLanes::ZERO, LineLanes::ZERO, height];
+    let [color, normal] = [texel.color, texel.normal].map(|of| of.map(LineLanes::splat));
+    let [near, far] = [0, 1].map(|i| {
+        let start = rows.start_at(column as i32, row as i32 + i);
+        let shown = match &shine {
+            Some(shine) => shine.at((start, &between), [color, normal], at, 0.0),
+            None => light.at(start, &between, at, 0.0),
+        };
+        shown.map(|lanes| lanes.as_array()[0])
+    });
+    let shown = [0, 1, 2].map(|c| near[c] + (far[c] - near[c]) * (y - row));
+    if shine.is_some() { shown } else { [0, 1, 2].map(|c| texel.color[c] * shown[c]) }
+}
