@@ -38,6 +38,12 @@ fn most_across(lines: u32) -> f32 {
 /// any input. Measured: with 512 the wall loses 0.4 dB, and thin high ridges 8 dB.
 pub const MAX_ROWS: f32 = 1024.0;
 
+/// The same of what is lit, of which a coarser level loses more: what faces the eye and what faces away
+/// are not as bright. Tables take over soon beyond [`MAX_ROWS`]. Measured, floor at 1280x720 under suns 60,
+/// 30 and 10 degrees high: 48.2, 47.0, 44.7 dB, and 47.6, 44.3, 41.7 with 1024 rows; unlit frames gain
+/// 0.1 dB, and take 1.1 of the time.
+pub const MAX_LIT_ROWS: f32 = 1536.0;
+
 /// Greatest anisotropy of common practice.
 const PARALLAX_ANISOTROPY: f32 = 16.0;
 
@@ -217,6 +223,8 @@ pub struct SweepExtent {
     pub along: f32,
     /// Down to the deepest relief, along the longer axis of the displacement.
     pub depth: f32,
+    /// Whether what it reads is lit.
+    pub is_lit: bool,
 }
 
 /// The finest level on which a sweep of so many `lines` is at most 2 to 2.75 texels a line wide, and
@@ -225,11 +233,12 @@ pub struct SweepExtent {
 pub fn for_sweep(surface: &Surface, extent: &SweepExtent, lines: u32) -> usize {
     let base = surface.base().texels_per_repeat();
     let most_across = most_across(lines);
+    let most_rows = if extent.is_lit { MAX_LIT_ROWS } else { MAX_ROWS };
     let fits = |level: &usize| {
         let texels = surface.levels()[*level].texels_per_repeat();
         // Sides may halve unevenly: the one with more texels counts.
         let scale = (texels[0] / base[0]).max(texels[1] / base[1]);
-        extent.across * scale <= most_across && (extent.along + extent.depth) * scale <= MAX_ROWS
+        extent.across * scale <= most_across && (extent.along + extent.depth) * scale <= most_rows
     };
     let last = surface.last_level();
     (0..last).find(fits).unwrap_or(last)

@@ -111,7 +111,7 @@ pub(super) fn colors(
             is_alone: batch.is_alone,
             light,
             bows: batch.bows.get(NUM_VECTORS * i..).unwrap_or_default(),
-            least_bias: usize::from(batch.is_lit() || is_curved || prepared.is_lit()),
+            shows_light: batch.is_lit() || is_curved || prepared.is_lit(),
             ..patches(prepared, (pixels, base), horizon, num_bins, batch.is_lit())
         };
         let picks = Picks { picks: near, lights: of_these, to_eyes: near_eyes };
@@ -227,9 +227,6 @@ fn patches<'a>(
     is_lit: bool,
 ) -> Patches<'a> {
     let loss = if is_lit { None } else { prepared.level_loss() };
-    // What light makes of a relief differs most between what is seen and what hides: a level that
-    // mixes the two shows it. Baked, a floor under a sun at 30 degrees has 41.3 dB without.
-    let least_bias = usize::from(is_lit || prepared.is_lit());
     let surface = prepared.surface();
     Patches {
         surface,
@@ -242,7 +239,7 @@ fn patches<'a>(
         horizon,
         num_bins,
         is_lit,
-        least_bias,
+        shows_light: is_lit || prepared.is_lit(),
         is_alone: false,
     }
 }

@@ -106,8 +106,8 @@ pub(super) struct Patches<'a> {
     /// Bins along the shortest ellipse: how finely the kernel is cut.
     pub(super) num_bins: f32,
     pub(super) is_lit: bool,
-    /// How many levels finer than their footprints ask for all sweeps are.
-    pub(super) least_bias: usize,
+    /// Whether what is swept shows light: sweeps are then a level finer than their footprints ask for.
+    pub(super) shows_light: bool,
     /// Whether each pixel is swept by itself.
     pub(super) is_alone: bool,
 }
@@ -271,15 +271,13 @@ impl<'a> Patches<'a> {
     /// What so many pixels sweep, as their level is to see it: what few of them sweep is larger for
     /// the price of a coarser one, unless each is wanted by itself.
     fn extent_of(&self, num: usize, [across, along]: [f32; 2], depth: f32) -> SweepExtent {
-        match num {
-            1 if !self.is_alone => SweepExtent {
-                across: across * FEW_WIDER,
-                along: along * LONE_LONGER,
-                depth: depth * LONE_LONGER,
-            },
-            2..=FEW => SweepExtent { across: across * FEW_WIDER, along, depth },
-            _ => SweepExtent { across, along, depth },
-        }
+        let (wider, longer) = match num {
+            1 if !self.is_alone => (FEW_WIDER, LONE_LONGER),
+            2..=FEW => (FEW_WIDER, 1.0),
+            _ => (1.0, 1.0),
+        };
+        let [along, depth] = [along, depth].map(|length| length * longer);
+        SweepExtent { across: across * wider, along, depth, is_lit: self.shows_light }
     }
 
     /// The level of a patch, by the geometric mean of the widest and the narrowest footprint and by
@@ -312,11 +310,14 @@ impl<'a> Patches<'a> {
         let extent = self.extent_of(num, [across, 2.0 * long.sqrt()], du.abs().max(dv.abs()));
         let finer_by = |bias: usize| for_sweep(self.surface, &extent, self.horizon.lines << bias);
         let level = finer_by(0);
+        // What light makes of a relief differs most between what is seen and what hides: a level that
+        // mixes the two shows it. Baked, a floor under a sun at 30 degrees has 41.3 dB without.
+        let least_bias = usize::from(self.shows_light);
         let bias = match self.loss {
             // Nothing is finer than the base level.
-            Some(loss) if level > 0 => loss.bias(self.surface, [du, dv]).max(self.least_bias),
+            Some(loss) if level > 0 => loss.bias(self.surface, [du, dv]).max(least_bias),
             Some(_) => 0,
-            None => self.least_bias,
+            None => least_bias,
         };
         Some(if bias == 0 { level } else { finer_by(bias) })
     }
