@@ -9,6 +9,7 @@ use super::bake::TextureFrame;
 use super::openings::Openings;
 use super::reflection::{LEAST_COSINE, alpha};
 use super::sky_lobe::SkyLobe;
+use super::vectors::dot;
 use crate::simd::Lanes;
 use glam::Vec3;
 
@@ -142,12 +143,11 @@ pub fn rough_length(roughness: f32) -> f32 {
 /// if the eye stood just above its plane, as in the truth.
 #[inline(always)]
 pub(crate) fn lobes<L: Lanes>(normal: [L; 3], [to_light, to_eye]: [[L; 3]; 2], a: L) -> L {
-    let dot = |a: [L; 3], b: [L; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let one = L::splat(1.0);
-    let inverse = one / dot(normal, normal).at_least(1e-6).sqrt();
-    let n_l = dot(normal, to_light) * inverse;
-    let n_v = dot(normal, to_eye) * inverse;
-    let l_v = dot(to_light, to_eye);
+    let inverse = one / dot(&normal, &normal).at_least(1e-6).sqrt();
+    let n_l = dot(&normal, &to_light) * inverse;
+    let n_v = dot(&normal, &to_eye) * inverse;
+    let l_v = dot(&to_light, &to_eye);
     // The eye, moved along the normal by what it lacks: its cosines are divided by its length.
     let lacks = (L::splat(LEAST_COSINE) - n_v).at_least(0.0);
     let length = one / (one + lacks * (n_v + n_v + lacks)).sqrt();

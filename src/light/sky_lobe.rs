@@ -12,6 +12,7 @@ use super::openings::Openings;
 use super::reflection::Reflectance;
 use super::sky_shares::SkyShares;
 use super::surface_point::unit_axes;
+use super::vectors::dot;
 use crate::scene::Sky;
 use crate::simd::Lanes;
 use glam::{Vec3, Vec4};
@@ -103,7 +104,7 @@ impl LocalSky {
             return self.sharp[0].map(L::splat);
         }
         let [x, y, z] = direction;
-        let u = dot(self.up.map(L::splat), direction);
+        let u = dot(&self.up.map(L::splat), &direction);
         let above = u.at_least(0.0);
         let size = above + above - u;
         let [least, more] = self.share_of_wide.map(L::splat);
@@ -139,11 +140,6 @@ fn wide(sky: &Sky, normal: Vec3) -> LinearSky {
         });
         weighed.truncate() / weighed.w
     })
-}
-
-#[inline(always)]
-fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

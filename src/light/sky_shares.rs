@@ -5,6 +5,7 @@
 //! normal.
 
 use super::reflection::{LEAST_COSINE, Reflectance, alpha};
+use super::vectors::dot;
 use crate::simd::Lanes;
 use glam::{DMat4, DVec4};
 
@@ -36,16 +37,16 @@ impl SkyShares {
         alpha: L,
     ) -> ([L; 2], [L; 3]) {
         let one = L::splat(1.0);
-        let inverse = one / dot(normal, normal).at_least(1e-6).sqrt();
+        let inverse = one / dot(&normal, &normal).at_least(1e-6).sqrt();
         let normal = normal.map(|c| c * inverse);
-        let n_v = dot(normal, to_eye).at_least(LEAST_COSINE).at_most(1.0);
+        let n_v = dot(&normal, &to_eye).at_least(LEAST_COSINE).at_most(1.0);
         let reflected = [0, 1, 2].map(|i| normal[i] * (n_v + n_v) - to_eye[i]);
         // Find by how far the lobe's middle is within the cone, and above the polygon, under which all is
         // relief.
-        let square_of_sine = dot(opening, opening).sqrt().at_least(1e-3).at_most(1.0);
+        let square_of_sine = dot(&opening, &opening).sqrt().at_least(1e-3).at_most(1.0);
         let by_sine = one / square_of_sine.sqrt();
         let by_square = by_sine * by_sine;
-        let in_cone = dot(reflected, opening) * by_square - (one - square_of_sine).sqrt();
+        let in_cone = dot(&reflected, &opening) * by_square - (one - square_of_sine).sqrt();
         let in_cone = in_cone * by_sine;
         let within = in_cone - (in_cone - reflected[2]).at_least(0.0);
         // The part of the lobe there is `(1 + d / (d^2 + w^2)^(1/2)) / 2`. What goes into the texel's own
@@ -88,9 +89,4 @@ fn shares(alpha: f32, reflectance: &Reflectance) -> [[f32; 4]; 2] {
     // No surface reflects more than all.
     let most = (0..=POINTS).map(|i| (found[0] + found[1]).dot(basis(i))).fold(1.0, f64::max);
     found.map(|terms| (terms / most).as_vec4().to_array())
-}
-
-#[inline(always)]
-fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

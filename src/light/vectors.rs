@@ -1,6 +1,6 @@
 //! Vectors of eight pixels.
 
-use crate::simd::PixelLanes;
+use crate::simd::{Lanes, PixelLanes};
 
 /// Three coordinates of eight pixels.
 pub type Vectors = [PixelLanes; 3];
@@ -10,8 +10,9 @@ pub fn cross(a: &Vectors, b: &Vectors) -> Vectors {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The scalar product.
-pub(super) fn dot(a: &Vectors, b: &Vectors) -> PixelLanes {
+/// The scalar product, of pixels or of a sweep's lines.
+#[inline(always)]
+pub(crate) fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

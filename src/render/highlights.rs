@@ -32,14 +32,16 @@ impl Shader<'_> {
         scratch: &mut ShadeScratch,
     ) -> Option<SweptGloss> {
         let MappedGloss { material, prepared, luster, shows_sky } = ground.gloss?;
+        // More lights than bits are lit place by place.
+        if !self.traits.asks_for_lights || self.scene.lights.len() > 64 {
+            return None;
+        }
         let is_curved = ground.swept.is_some();
         let has_sky = is_curved && *shows_sky;
         let is_here = |light: &Light| is_curved || matches!(light, Light::Point { .. });
         let lights = self.scene.lights.iter().enumerate().filter(|(_, light)| is_here(light));
-        // More lights than bits are lit place by place.
-        let lights = lights.take(64).fold(0_u64, |lights, (i, _)| lights | 1 << i);
-        let is_few = self.traits.asks_for_lights && self.scene.lights.len() <= 64;
-        if !is_few || lights == 0 && !has_sky {
+        let lights = lights.fold(0_u64, |lights, (i, _)| lights | 1 << i);
+        if lights == 0 && !has_sky {
             return None;
         }
         let of = Ground { material, prepared, unlit: prepared, diffuse: prepared, ..*ground };

@@ -9,9 +9,7 @@
 //!        the run     `- offset of the first line; the others follow at equal distances
 //! ```
 
-use super::glossy::PatchGloss;
 use super::grid::{Grid, Shown};
-use super::shine::PatchShine;
 use super::sweep_frame::SweepFrame;
 use super::walk::Texels;
 use crate::relief::SEEN_DEPTH;
@@ -223,14 +221,9 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
     ) -> Texels<CHANNELS> {
         let between = self.between(steps, i);
         let place = steps.places[i];
-        if let (true, Shown::Gloss(gloss)) = (LIT, self.grid.shown) {
+        if LIT && matches!(self.grid.shown, Shown::Gloss(_) | Shown::Shine(_)) {
             let mut values = [LineLanes::ZERO; CHANNELS];
-            values[..3].copy_from_slice(&self.highlights(gloss, steps, i, &between));
-            return Texels { values, place };
-        }
-        if let (true, Shown::Shine(shine)) = (LIT, self.grid.shown) {
-            let mut values = [LineLanes::ZERO; CHANNELS];
-            values[..3].copy_from_slice(&self.shining(shine, steps, i, &between));
+            values[..3].copy_from_slice(&self.highlights(steps, i, &between));
             return Texels { values, place };
         }
         let (mut values, height) = self.step_values(steps, i, &between);
@@ -243,34 +236,18 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         Texels { values, place }
     }
 
-    /// What the texels of a step reflect.
+    /// What the texels of a step reflect, where that is shown.
     #[inline(never)]
-    fn highlights(
-        &self,
-        gloss: &PatchGloss,
-        steps: &Steps,
-        i: usize,
-        between: &Between,
-    ) -> [LineLanes; 3] {
-        let ([r, g, b, x, y, z], _) = self.step_values(steps, i, between);
-        let p = steps.places[i] * self.grid.step + self.grid.begin;
-        let at = [self.others + self.xi, p];
-        gloss.at([[r, g, b], [x, y, z]], at, (steps.others[i], between))
-    }
-
-    /// The same on a curved surface.
-    #[inline(never)]
-    fn shining(
-        &self,
-        shine: &PatchShine,
-        steps: &Steps,
-        i: usize,
-        between: &Between,
-    ) -> [LineLanes; 3] {
+    fn highlights(&self, steps: &Steps, i: usize, between: &Between) -> [LineLanes; 3] {
         let ([r, g, b, x, y, z], height) = self.step_values(steps, i, between);
-        let p = steps.places[i] * self.grid.step + self.grid.begin;
-        let at = [self.others + self.xi, p, height];
-        shine.at((steps.others[i], between), [[r, g, b], [x, y, z]], at, steps.q[i])
+        let texels = [[r, g, b], [x, y, z]];
+        let read = (steps.others[i], between);
+        let (xi, p) = (self.others + self.xi, steps.places[i] * self.grid.step + self.grid.begin);
+        match self.grid.shown {
+            Shown::Gloss(gloss) => gloss.at(texels, [xi, p], read),
+            Shown::Shine(shine) => shine.at(read, texels, [xi, p, height], steps.q[i]),
+            Shown::Colors | Shown::Light(_) => [LineLanes::ZERO; 3],
+        }
     }
 
     /// [`Self::values`] of a step: of its row, or of both rows beside it.

@@ -243,7 +243,7 @@ impl<'a> Patches<'a> {
             }
             if let Some(shine) = &curved.shine {
                 let unit = (BETWEEN_SCALE, plan.level == 0);
-                let shine = PatchShine::new(light, shine, (picks, pixels), unit);
+                let shine = PatchShine::new(&light, shine, (picks, pixels), unit);
                 plan.run::<3, true>(unlit, pixels, (&[], Shown::Shine(&shine)), totals)
             } else {
                 plan.run::<3, true>(unlit, pixels, (&[], Shown::Light(&light)), totals)

@@ -21,7 +21,7 @@ pub(crate) fn lit_at(
     let shine = curved
         .shine
         .as_ref()
-        .map(|shine| PatchShine::new(light.clone(), shine, (&picks, &here), (1.0, false)));
+        .map(|shine| PatchShine::new(&light, shine, (&picks, &here), (1.0, false)));
     let [x, y] = surface.base().in_texels(near_origin(place, surface.wrap())).map(|c| c - 0.5);
     let [column, row] = [x, y].map(f32::floor);
     let between = Between::new(LineLanes::splat(x - column));

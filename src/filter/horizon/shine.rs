@@ -10,7 +10,7 @@
 use super::fit::{Fit, Linear};
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
-use crate::light::{Luster, Shine, lobes, spread_square};
+use crate::light::{Luster, Shine, dot, lobes, spread_square};
 use crate::simd::{Between, LineLanes};
 use crate::texture::FULL_F32;
 
@@ -20,7 +20,7 @@ const LEAST_OPEN: f32 = 0.05;
 /// What a patch reflects.
 #[derive(Clone, Debug)]
 pub(super) struct PatchShine<'a> {
-    pub(super) light: PatchLight<'a>,
+    pub(super) light: &'a PatchLight<'a>,
     luster: Luster,
     /// The stored colour that reflects all.
     full: f32,
@@ -34,7 +34,7 @@ impl<'a> PatchShine<'a> {
     /// Of the lights of picked pixels, which lie so on the lines of a patch; colours come in units of 1
     /// over `unit`.
     pub(super) fn new(
-        light: PatchLight<'a>,
+        light: &'a PatchLight<'a>,
         Shine { luster, to_eyes }: &Shine,
         (picks, pixels): (&[u8], &[PixelOnLines]),
         (unit, is_base): (f32, bool),
@@ -59,7 +59,7 @@ impl<'a> PatchShine<'a> {
         [xi, p, height]: [LineLanes; 3],
         q: f32,
     ) -> [LineLanes; 3] {
-        let PatchLight { middle, rows, suns, points, sky } = &self.light;
+        let PatchLight { middle, rows, suns, points, sky } = self.light;
         let [xi, p] = [xi - middle[0], p - middle[1]];
         let q = LineLanes::splat(q - middle[1]);
         let to_eye = unit(self.to_eye.each_ref().map(|c| c.at(xi, q)));
@@ -70,7 +70,7 @@ impl<'a> PatchShine<'a> {
             let to_light = unit(way);
             let shown = lobes(normal, [to_light, to_eye], a) * share;
             // Schlick's share, by the cosine to the half vector.
-            let cosine = (dot(to_light, to_eye) * 0.5 + 0.5).fast_max(LineLanes::ZERO).sqrt();
+            let cosine = (dot(&to_light, &to_eye) * 0.5 + 0.5).fast_max(LineLanes::ZERO).sqrt();
             let c = (LineLanes::ONE - cosine).fast_max(LineLanes::ZERO);
             let schlick = c * c * (c * c) * c;
             for i in 0..3 {
@@ -89,7 +89,7 @@ impl<'a> PatchShine<'a> {
         if let Some(sky) = sky {
             let (t0, t) = self.light.sky_seen(start, between);
             let n = unit(normal);
-            let along = dot(n, t).fast_max(dot(t, t).sqrt() * LEAST_OPEN);
+            let along = dot(&n, &t).fast_max(dot(&t, &t).sqrt() * LEAST_OPEN);
             let by = t0 / along.fast_max(LineLanes::splat(1e-3));
             let opening = t.map(|c| c * by);
             let ([x, y], from) = self.luster.sky.lobe([n, opening, to_eye], a.sqrt());
@@ -101,12 +101,7 @@ impl<'a> PatchShine<'a> {
 }
 
 #[inline(always)]
-fn dot(a: [LineLanes; 3], b: [LineLanes; 3]) -> LineLanes {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
 fn unit(way: [LineLanes; 3]) -> [LineLanes; 3] {
-    let inverse = LineLanes::ONE / dot(way, way).fast_max(LineLanes::splat(1e-12)).sqrt();
+    let inverse = LineLanes::ONE / dot(&way, &way).fast_max(LineLanes::splat(1e-12)).sqrt();
     way.map(|c| c * inverse)
 }
