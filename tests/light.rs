@@ -5,7 +5,7 @@ mod common;
 use basrelief::invariants::{lights_add, no_more_than_the_sky};
 use basrelief::relief::{Climb, HeightField, march};
 use basrelief::simd::PixelLanes;
-use basrelief::texture::{HeightImage, Surface, SurfaceMaps, Wrap};
+use basrelief::texture::{ColorImage, HeightImage, Surface, SurfaceMaps, Wrap};
 use basrelief::{
     Camera, Filter, Frame, Light, Lighting, Material, Mesh, Rays, Renderer, Scene, Settings, Sky,
 };
@@ -136,6 +136,33 @@ fn without_relief_the_truth_is_the_closed_form() {
                 let error = (found[c] / expected[c] - 1.0).abs();
                 assert!(error < 0.005, "{metallic} {roughness} {place:?}: {found:?} {expected:?}");
             }
+        }
+    }
+}
+
+/// Directions keep their angles in the frame of a texture whose u and v are all but parallel: once
+/// facets with such coordinates shone white where they should have been dark.
+#[test]
+fn oblique_texture_coordinates_change_no_light() {
+    let brown = Some(ColorImage::from_fn(64, 64, |_, _| [0.2, 0.1, 0.05]));
+    let brown = Surface::new(SurfaceMaps { albedo: brown, ..SurfaceMaps::default() });
+    let metal = matt(Some(brown.expect("valid maps")));
+    let metal = Material { specular: 1.0, metallic: 1.0, roughness: 0.5, ..metal };
+    let mut scene = table(metal);
+    scene.sky = Sky::Gradient { top: Vec3::Z, horizon: Vec3::ONE, ground: Vec3::X };
+    scene.lights = vec![
+        Light::sun(Vec3::new(1.0, 0.7, 0.4), Vec3::ONE),
+        Light::Point { position: Vec3::new(-0.5, 2.0, 0.3), intensity: Vec3::ONE },
+    ];
+    let mut sheared = scene.clone();
+    let Mesh { positions, tex_coords, triangles, .. } = scene.meshes[0].clone();
+    let tex_coords = tex_coords.into_iter().map(|uv| Vec2::new(uv.x + 4.0 * uv.y, uv.y)).collect();
+    sheared.meshes[0] = Mesh::new(positions, tex_coords, vec![], triangles);
+    for filter in [Filter::default(), Filter::Nearest, Filter::Truth(Rays { samples: 4 })] {
+        let settings = Settings { filter, ..square(1) };
+        let [straight, sheared] = [&scene, &sheared].map(|scene| draw(scene, &settings));
+        for (a, b) in straight.pixels.iter().flatten().zip(sheared.pixels.iter().flatten()) {
+            assert!((a - b).abs() < 0.01 * a.max(0.1), "{a} {b} by {filter:?}");
         }
     }
 }

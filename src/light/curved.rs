@@ -13,7 +13,7 @@ use glam::Vec3;
 pub struct FrameLanes {
     /// dP/du and dP/dv, in world units a repeat.
     tangents: [Vectors; 2],
-    /// The unit axes: along u, along v, and off the surface on the eye's side.
+    /// The unit axes, as [`unit_axes`](super::unit_axes), on the eye's side.
     pub axes: [Vectors; 3],
     /// Lanes that show the back.
     pub is_back: PixelLanes,
@@ -156,11 +156,13 @@ impl FrameLanes {
     /// At points with normals and tangents of any length, some seen from behind.
     pub fn new(normal: &Vectors, tangents: &[Vectors; 2], is_back: PixelLanes) -> Self {
         let normal = unit(normal).map(|c| is_back.select(-c, c));
-        let [u, v] = tangents.map(|t| {
-            let along = dot(&t, &normal);
-            unit(&[0, 1, 2].map(|i| t[i] - normal[i] * along))
-        });
-        Self { tangents: *tangents, axes: [u, v, normal], is_back }
+        let [u, v] = tangents;
+        let along = dot(u, &normal);
+        let u = unit(&[0, 1, 2].map(|i| u[i] - normal[i] * along));
+        let across = cross(&normal, &u);
+        let is_turned = dot(&across, v).simd_lt(PixelLanes::ZERO);
+        let across = across.map(|c| is_turned.select(-c, c));
+        Self { tangents: *tangents, axes: [u, across, normal], is_back }
     }
 
     /// The ways from pixels at `position` to a point. Down to the deepest relief their view rays

@@ -17,17 +17,21 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// The unit axes of the texture's frame in the world: along u, along v, and off the surface on
-    /// the side that is seen. u and v may be oblique.
+    /// The axes of the texture's frame in the world, see [`unit_axes`], on the side that is seen.
     pub(crate) fn axes(&self) -> [Vec3; 3] {
         let normal = self.normal.normalize_or(Vec3::Z);
         unit_axes(self.tangents, if self.is_back { -normal } else { normal })
     }
 }
 
-/// Axes of unit length along u, along v and a unit normal.
-pub fn unit_axes(tangents: [Vec3; 2], normal: Vec3) -> [Vec3; 3] {
+/// The axes that a texture's normals are held against: along u, across it on the side of v, and the
+/// unit normal.
+///
+/// They stand at right angles even where u and v do not, as in glTF 2.0: only then are cosines
+/// between directions of the frame those of the world.
+pub fn unit_axes([u, v]: [Vec3; 2], normal: Vec3) -> [Vec3; 3] {
     // Take off what interpolated tangents have along the normal.
-    let [u, v] = tangents.map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
-    [u, v, normal]
+    let u = (u - normal * u.dot(normal)).normalize_or_zero();
+    let across = normal.cross(u);
+    [u, if across.dot(v) < 0.0 { -across } else { across }, normal]
 }
