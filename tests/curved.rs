@@ -113,6 +113,28 @@ fn a_glossy_torus_is_lit_as_the_truth_lights_it() {
     }
 }
 
+/// Its own shadow lies on a torus without relief, with a texture or without one, and it hides a part of
+/// the sky from itself: once neither did.
+#[test]
+fn a_torus_without_relief_is_lit_as_the_truth_lights_it() {
+    let sun = Light::sun(Vec3::new(-0.6, 0.3, -0.6), Vec3::splat(0.8));
+    let point = Light::Point { position: Vec3::new(1.4, 0.6, 1.2), intensity: Vec3::splat(1.0) };
+    let sky = Sky::Gradient { top: Vec3::splat(0.5), horizon: Vec3::ONE, ground: Vec3::ZERO };
+    let maps = SurfaceMaps { height: None, ..cobbles(128, 4) };
+    for light in [sun, point] {
+        let mut scene = torus(maps.clone(), &[light], Vec3::ZERO);
+        scene.sky = sky.clone();
+        let material = scene.materials[0].clone();
+        for surface in [material.surface.clone(), None] {
+            scene.materials[0] = Material { surface, ..material.clone() };
+            let [found, truth] = [Filter::default(), Filter::Truth(Rays { samples: 64 })]
+                .map(|filter| draw(&scene, filter));
+            let found = decibels(&found, &truth, 3000.0);
+            assert!(found > 38.0, "{found} dB under {light:?}");
+        }
+    }
+}
+
 #[test]
 fn in_a_white_furnace_nothing_shines() {
     let white = ColorImage::from_fn(64, 64, |_, _| [1.0; 3]);

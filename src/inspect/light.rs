@@ -3,7 +3,7 @@
 use super::cut::Cut;
 use super::ground::QuadPixel;
 use crate::filter::Prepared;
-use crate::light::exact::{ExactLight, Hit, Occluders, Reaching, Spot};
+use crate::light::exact::{Clearance, ExactLight, Hit, Occluders, Reaching, Spot};
 use crate::light::{SurfacePoint, TextureFrame};
 use crate::scene::{Light, Material, Scene};
 use glam::Vec3;
@@ -38,14 +38,15 @@ pub(super) fn hit_of<'a>(
     let base = if seen.past.is_some() { place } else { seen.ray.base };
     let relief = prepared.field();
     let spot = Spot { relief, base, place, albedo: Vec3::ONE, normal };
-    Hit { point, finish: material.finish(|map| map.at(place)), spot }
+    let (finish, clearance) = (material.finish(|map| map.at(place)), Clearance::default());
+    Hit { point, clearance, finish, spot }
 }
 
 /// What light sees of a place without a texture.
 pub(super) fn plain_hit(material: &Material, point: SurfacePoint) -> Hit<'static> {
     let (base, place) = ([0.0; 2], [0.0; 2]);
     let spot = Spot { relief: None, base, place, albedo: Vec3::ONE, normal: Vec3::Z };
-    Hit { point, finish: material.plain_finish(), spot }
+    Hit { point, clearance: Clearance::default(), finish: material.plain_finish(), spot }
 }
 
 impl PixelLight {

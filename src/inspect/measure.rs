@@ -12,13 +12,14 @@ use crate::light::SurfacePoint;
 use crate::light::exact::{ExactLight, Hit};
 use crate::raster::{Drawn, Follow, Pool, QuadBlock, QuadPair, Rasterizer};
 use crate::relief::{finite, stretch};
-use crate::render::{Outlines, Passages, PreparedScene, Shader, pixel_center, surface_point};
+use crate::render::{
+    Outlines, Passages, PreparedScene, Shader, pixel_center, point_of, surface_point,
+};
 use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
 use crate::shell::ReliefHit;
 use crate::simd::PixelLanes;
 use crate::texture::Texel;
-use glam::Vec3;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// What [`measure`] gives of each pixel.
@@ -336,13 +337,7 @@ fn each_covered(
     values
 }
 
-/// A normal of the texture frame in world space, on the side that the eye sees.
-fn world(pair: &QuadPair, lane: usize, [x, y, z]: [f32; 3]) -> [f32; 3] {
-    let Some(lit) = pair.lit() else { return [0.0; 3] };
-    let at = |lanes: &[PixelLanes; 3]| Vec3::from(lanes.map(|lanes| lanes.as_array()[lane]));
-    let normal = at(&lit.normal).normalize_or(Vec3::Z);
-    let normal = if pair.view()[2].as_array()[lane] < 0.0 { -normal } else { normal };
-    let [u, v] = [at(&lit.tangent_u), at(&lit.tangent_v)]
-        .map(|t| (t - normal * t.dot(normal)).normalize_or_zero());
-    (u * x + v * y + normal * z).normalize_or(normal).to_array()
+/// A normal of the texture's frame in the world, on the side that the eye sees.
+fn world(pair: &QuadPair, lane: usize, local: [f32; 3]) -> [f32; 3] {
+    pair.lit().map_or([0.0; 3], |lit| point_of(&lit, lane).in_world(local).to_array())
 }

@@ -4,10 +4,9 @@ use super::layer::Layer;
 use super::place::write_place;
 use super::values::{Band, ValuesMut};
 use crate::geometry::Projection;
-use crate::light::SurfacePoint;
 use crate::raster::{CenterTile, LitLanes, QuadBlock, QuadPair};
 use crate::relief::{HeightField, ViewRays, displacement_over, finite, march_all, stretch};
-use crate::render::{Outlines, PreparedScene};
+use crate::render::{Outlines, PreparedScene, point_of};
 use crate::scene::{Material, Scene};
 use crate::shell::Met;
 use crate::simd::PixelLanes;
@@ -132,17 +131,8 @@ impl Hits<'_> {
 }
 
 /// A normal of the texture's frame in the world, on the side of the polygon that the eye sees.
-fn normal(pixel: &Pixel, [x, y, z]: [f32; 3]) -> Vec3 {
-    let Some(lit) = pixel.lit else { return Vec3::ZERO };
-    let at = |lanes: &[PixelLanes; 3]| Vec3::from(lanes.map(|lanes| lanes.as_array()[pixel.lane]));
-    let point = SurfacePoint {
-        position: at(&lit.position),
-        normal: at(&lit.normal),
-        tangents: [at(&lit.tangent_u), at(&lit.tangent_v)],
-        is_back: lit.is_back.to_bitmask() >> pixel.lane & 1 == 1,
-    };
-    let [u, v, normal] = point.axes();
-    (u * x + v * y + normal * z).normalize_or(normal)
+fn normal(pixel: &Pixel, local: [f32; 3]) -> Vec3 {
+    pixel.lit.map_or(Vec3::ZERO, |lit| point_of(lit, pixel.lane).in_world(local))
 }
 
 /// Traces the rays of a block's pairs to the relief.

@@ -11,8 +11,8 @@ use glam::Vec3;
 pub struct LocalLights {
     /// What the sky lights a white surface to that lies in the polygon.
     pub ambient: Vec3,
-    /// How much of the sky gets here, 0 to 1: part of `ambient` already.
-    pub occlusion: f32,
+    /// How much of the sky gets here, red, green and blue, 0 to 1: part of `ambient` already.
+    pub occlusion: Vec3,
     /// In the order of the scene.
     pub lights: Vec<LocalLight>,
     /// Unit direction to the eye.
@@ -72,11 +72,11 @@ impl LocalLights {
         });
         let to_eye = local(eye.seen_from(point.position).normalize_or_zero());
         let (ambient, lights) = (sky.irradiance(normal), lights.collect());
-        Self { ambient, occlusion: 1.0, lights, to_eye, axes }
+        Self { ambient, occlusion: Vec3::ONE, lights, to_eye, axes }
     }
 
-    /// Leaves so much of the sky, 0 to 1.
-    pub fn occlude(&mut self, share: f32) {
+    /// Leaves so much of the sky, red, green and blue, 0 to 1.
+    pub fn occlude(&mut self, share: Vec3) {
         self.ambient *= share;
         self.occlusion *= share;
     }

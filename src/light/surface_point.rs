@@ -22,6 +22,12 @@ impl SurfacePoint {
         let normal = self.normal.normalize_or(Vec3::Z);
         unit_axes(self.tangents, if self.is_back { -normal } else { normal })
     }
+
+    /// A normal of the texture's frame in the world.
+    pub(crate) fn in_world(&self, [x, y, z]: [f32; 3]) -> Vec3 {
+        let [u, v, normal] = self.axes();
+        (u * x + v * y + normal * z).normalize_or(normal)
+    }
 }
 
 /// The axes that a texture's normals are held against: along u, across it on the side of v, and the

@@ -25,7 +25,7 @@ impl Shader<'_> {
         }
         // Find the lights that reach all of the block, and those that reach a part.
         let (mut whole, mut parts) = (all, Vec::new());
-        for (i, hidden) in hidden.0.iter().enumerate() {
+        for (i, hidden) in hidden.lights.iter().enumerate() {
             if hidden.is_empty() || all.lights >> i & 1 == 0 {
                 continue;
             }

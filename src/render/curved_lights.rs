@@ -76,9 +76,9 @@ impl CurvedLights {
         let mut shone = Shone::default();
         for pair in pairs.map(|index| block.pair(index)) {
             let Some(lit) = pair.lit() else { continue };
-            let frame = all.shine_on(&lit, || displacement(&pair.view(), relief_depth), &mut shone);
+            all.shine_on(&lit, || displacement(&pair.view(), relief_depth), &mut shone);
             if swept.has_sky {
-                let sky = skies.of_pair((scene, occluders), &pair, &frame);
+                let sky = skies.of_pair((scene, occluders), &pair).unwrap_or_default();
                 shone.skies.push(sky);
             }
         }
@@ -92,7 +92,7 @@ impl CurvedLights {
         lit: &LitLanes,
         displacement: impl Fn() -> [PixelLanes; 2],
         shone: &mut Shone,
-    ) -> FrameLanes {
+    ) {
         let LitLanes { position, normal, tangent_u, tangent_v, is_back } = lit;
         let frame = FrameLanes::new(normal, &[*tangent_u, *tangent_v], *is_back);
         shone.slants.extend(self.discs.iter().map(|disc| frame.slant(disc.to_middle)));
@@ -102,7 +102,6 @@ impl CurvedLights {
         }
         shone.to_eyes.extend(self.shine.map(|(eye, _)| frame.to_eye(position, eye)));
         shone.frames.push(frame);
-        frame
     }
 
     /// How they shine on the polygons above hits of a pixel's rays, under the sky of the pixel.

@@ -4,14 +4,15 @@
 //! are near are its own. A sun's [`Ceiling`] first tells of a few pixels whether anything else may be
 //! in the way: where nothing is, no ray is sent and nothing of the relief is looked for.
 
-use super::ground::Ground;
 use super::hidden_lights::HiddenLights;
 use super::shade::Shader;
-use super::shadows::{Hidden, Places, along, half_width, of_lane, places, range, steps};
+use super::shadows::{
+    Hidden, Places, along, half_width, of_lane, pixel_reach, places, range, steps,
+};
 use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
 use crate::light::{FrameLanes, Vectors, cross, repeat_length};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
-use crate::relief::displacement;
+use crate::relief::{HeightField, displacement};
 use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
 
@@ -22,12 +23,12 @@ impl Shader<'_> {
     /// Finds the parts of suns that are not seen from the pixels of a block of a curved surface.
     pub(super) fn hide_on_curved(
         &self,
-        ground: &Ground,
+        field: Option<&HeightField>,
         block: &QuadBlock,
         hidden: &mut HiddenLights,
     ) {
         let occluders = self.prepared.occluders(self.scene);
-        let rays = block.pairs().filter_map(|pair| ViewRays::new(ground, &pair));
+        let rays = block.pairs().filter_map(|pair| ViewRays::new(field, &pair));
         let rays: Vec<_> = rays.collect();
         let of_sun = |ceiling: &Ceiling| {
             let mut hidden = vec![PixelLanes::ZERO; rays.len()];
@@ -42,14 +43,18 @@ impl Shader<'_> {
                 if is_lit && (is_steep || !ceiling.is_clear(&rays.spots(ceiling.axes()))) {
                     let pair = block.pair(i);
                     if let Some(lit) = pair.lit() {
-                        open.push((i, places(&pair, ground, &lit, &rays.normal), rays.normal));
+                        open.push((
+                            i,
+                            places((self.scene, &pair), field, &lit, &rays.normal),
+                            rays.normal,
+                        ));
                     }
                 }
             }
             hide(occluders, ceiling, &open, &mut hidden);
             hidden
         };
-        for (ceiling, hidden) in self.prepared.ceilings(self.scene).iter().zip(&mut hidden.0) {
+        for (ceiling, hidden) in self.prepared.ceilings(self.scene).iter().zip(&mut hidden.lights) {
             if let Some(ceiling) = ceiling {
                 *hidden = of_sun(ceiling);
             }
@@ -95,17 +100,18 @@ struct ViewRays {
 }
 
 impl ViewRays {
-    fn new(ground: &Ground, pair: &QuadPair) -> Option<Self> {
+    fn new(field: Option<&HeightField>, pair: &QuadPair) -> Option<Self> {
         let LitLanes { position, normal, tangent_u, tangent_v, is_back } = pair.lit()?;
         let [_, _, normal] = FrameLanes::new(&normal, &[tangent_u, tangent_v], is_back).axes;
-        let relief_depth = ground.prepared.surface().relief_depth();
-        let moved = displacement(&pair.view(), relief_depth);
-        let down = repeat_length(&cross(&tangent_u, &tangent_v)) * relief_depth;
+        let (covered, steps) = (pair.covered_bits(), steps(&position));
+        let (way, reach) = (Vectors::default(), pixel_reach(&steps));
+        let flat = Self { polygon: position, way, normal, steps, reach, covered };
+        let Some(HeightField { relief_depth, .. }) = field else { return Some(flat) };
+        let moved = displacement(&pair.view(), *relief_depth);
+        let down = repeat_length(&cross(&tangent_u, &tangent_v)) * *relief_depth;
         let way =
             [0, 1, 2].map(|i| tangent_u[i] * moved[0] + tangent_v[i] * moved[1] - down * normal[i]);
-        let covered = pair.covered_bits();
-        let steps = steps(&position);
-        Some(Self { polygon: position, way, normal, steps, reach: down * 2.0, covered })
+        Some(Self { way, reach: down * 2.0, ..flat })
     }
 
     /// All of their points by the axes across a light and to it.

@@ -1,12 +1,13 @@
 //! What pixels lie on: a material with its texture, and the polygon at places of the screen.
 
+use super::hidden_lights::HiddenLights;
 use super::mapped::{Glow, MappedGloss};
 use super::open_sky::OpenSky;
 use super::outlines::Outlines;
 use crate::filter::Prepared;
 use crate::footprint::{Footprint, Footprints};
 use crate::light::{LocalLights, Luster, SurfacePoint};
-use crate::raster::{AttributePlanes, LitPlanes, Plane, QuadPair};
+use crate::raster::{AttributePlanes, LitLanes, LitPlanes, Plane, QuadPair};
 use crate::scene::{Finish, Material};
 use crate::shell::ReliefHit;
 use crate::simd::PixelLanes;
@@ -33,6 +34,8 @@ pub(crate) struct Ground<'a> {
     pub(crate) glow: Option<&'a Glow>,
     /// What it reflects, where highlights of some lights are swept as diffuse light is.
     pub(crate) gloss: Option<&'a MappedGloss>,
+    /// What meshes hide of its lights, where they are evaluated place by place.
+    pub(super) hidden: Option<&'a HiddenLights>,
 }
 
 /// Lights of a scene.
@@ -67,7 +70,8 @@ impl Ground<'_> {
         let Some(map) = &self.material.maps.occlusion else { return };
         let pixels = pixels.iter().flat_map(|p| p.covered().map(|lane| p.lane(lane)));
         for (pixel, lights) in pixels.zip(lights) {
-            lights.occlude(map.over(pixel.hit, [pixel.dx, pixel.dy])[0].min(1.0));
+            let share = map.over(pixel.hit, [pixel.dx, pixel.dy])[0].min(1.0);
+            lights.occlude(Vec3::splat(share));
         }
     }
 
@@ -167,6 +171,17 @@ pub(super) fn eval([a, b, c]: &Plane, x: PixelLanes, y: PixelLanes) -> PixelLane
 pub(crate) fn pixel_center(pair: &QuadPair, lane: usize) -> [f32; 2] {
     let [x, y] = pair.pixel(lane);
     [x as f32 + 0.5, y as f32 + 0.5]
+}
+
+/// The polygon's point at a lane's pixel centre.
+pub(crate) fn point_of(lit: &LitLanes, lane: usize) -> SurfacePoint {
+    let at = |lanes: &[PixelLanes; 3]| Vec3::from(lanes.map(|lanes| lanes.as_array()[lane]));
+    SurfacePoint {
+        position: at(&lit.position),
+        normal: at(&lit.normal),
+        tangents: [at(&lit.tangent_u), at(&lit.tangent_v)],
+        is_back: lit.is_back.to_bitmask() >> lane & 1 == 1,
+    }
 }
 
 /// The polygon's point at a place of the screen; `None` without lighting.

@@ -9,6 +9,7 @@
 
 mod baked;
 mod bows;
+mod by_place;
 mod curved;
 mod curved_lights;
 mod curved_shadows;
@@ -31,7 +32,7 @@ mod shadows;
 mod skies;
 mod strays;
 
-pub(crate) use ground::{pixel_center, surface_point};
+pub(crate) use ground::{pixel_center, point_of, surface_point};
 pub(crate) use outlines::Outlines;
 pub(crate) use passages::Passages;
 pub(crate) use prepared::PreparedScene;

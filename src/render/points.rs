@@ -13,16 +13,18 @@ use crate::filter::{Batch, Filtered};
 use crate::light::FrameLanes;
 use crate::light::exact::{LightRay, Occluders, Receiver};
 use crate::raster::{LitLanes, QuadBlock};
+use crate::relief::HeightField;
 use crate::scene::Light;
 use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
 use std::ops::Range;
 
 impl Shader<'_> {
-    /// Finds what meshes hide of points from a block's pixels.
+    /// Finds what meshes hide of points from a block's pixels, over a relief if there is one. What is
+    /// curved has no `normal`, and no plane below which nothing hides.
     pub(super) fn hide_points(
         &self,
-        ground: &Ground,
+        (field, normal): (Option<&HeightField>, Vec3),
         block: &QuadBlock,
         hidden: &mut HiddenLights,
     ) {
@@ -34,20 +36,18 @@ impl Shader<'_> {
             let lit = pair.lit()?;
             let LitLanes { normal, tangent_u, tangent_v, is_back, .. } = lit;
             let frame = FrameLanes::new(&normal, &[tangent_u, tangent_v], is_back);
-            let places = places(&pair, ground, &lit, &frame.axes[2]);
+            let places = places((self.scene, &pair), field, &lit, &frame.axes[2]);
             Some((places, frame.is_back.to_bitmask() as u8))
         });
         let Some(pixels) = pixels.collect::<Option<Vec<_>>>() else { return };
         let relief = pixels.iter().flat_map(|(places, _)| {
             set_bits(places.covered).map(|lane| of_lane(&places.relief, lane))
         });
-        // What is curved has no plane below which nothing hides.
-        let normal = ground.baked.map_or(Vec3::ZERO, |lit| lit.normal);
         let Some((first, _)) = pixels.first() else { return };
         let Some(receiver) = Receiver::new(relief, normal, of_lane(&first.polygon, 0)) else {
             return;
         };
-        for (light, hidden) in self.scene.lights.iter().zip(&mut hidden.0) {
+        for (light, hidden) in self.scene.lights.iter().zip(&mut hidden.lights) {
             let Light::Point { position, .. } = *light else { continue };
             if occluders.may_hide(&receiver, position) {
                 let of = |(places, is_back): &(Places, u8)| {
@@ -103,7 +103,7 @@ impl Shader<'_> {
         self.list_lights((block, pairs.clone()), lights);
         hidden.dim(lights, (block, pairs.clone()));
         for lights in lights.iter_mut() {
-            lights.occlude(0.0);
+            lights.occlude(Vec3::ZERO);
             lights.lights.retain(|light| light.is_point);
         }
         filtered.resize(pairs.len(), Filtered::default());

@@ -292,7 +292,19 @@ impl PreparedScene {
         let prepared = if is_swept { diffuse } else { prepared };
         let glow = mapped.and_then(|mapped| mapped.glow.as_ref());
         let gloss = mapped.and_then(|mapped| mapped.gloss.get());
-        Some(Ground { material, prepared, unlit, diffuse, is_lit, swept, baked, glow, gloss })
+        let hidden = None;
+        Some(Ground {
+            material,
+            prepared,
+            unlit,
+            diffuse,
+            is_lit,
+            swept,
+            baked,
+            glow,
+            gloss,
+            hidden,
+        })
     }
 
     /// The surface of a material, if it has one; drawn flat unless relief is traced.

@@ -16,7 +16,7 @@ use crate::footprint::{FootprintRule, Footprints};
 use crate::light::LocalLights;
 use crate::light::exact::ExactLight;
 use crate::raster::{Pool, QuadBlock, QuadPair};
-use crate::scene::{Material, Scene};
+use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::simd::PixelLanes;
 use glam::Vec3;
@@ -113,17 +113,22 @@ impl<'a> Shader<'a> {
             }));
         }
         let Some(ground) = ground else {
-            return colors.extend(block.pairs().map(|pair| self.plain(&pair, material)));
+            return self.plain(block, material, &mut scratch, colors);
         };
         let start = colors.len();
         let num_lights = if ground.is_lit { self.scene.lights.len() } else { 0 };
         let mut hidden = HiddenLights::none(num_lights);
         // What only sends out light sends out its colour.
         let is_glowing = material.base_color == Vec3::ZERO;
+        let field = ground.prepared.field();
         if let Some(swept) = ground.swept {
-            self.hide_on_curved(&ground, block, &mut hidden);
-            self.hide_points(&ground, block, &mut hidden);
+            self.hide_on_curved(field, block, &mut hidden);
+            self.hide_points((field, Vec3::ZERO), block, &mut hidden);
             self.swept(&ground, (swept, &hidden), block, &mut scratch, colors);
+        } else if ground.asks_for_lights() {
+            hidden = self.hidden_by_place(field, block);
+            let ground = Ground { hidden: Some(&hidden), ..ground };
+            self.textured(&ground, block, &mut scratch, colors);
         } else {
             self.textured(&ground, block, &mut scratch, colors);
         }
@@ -131,7 +136,7 @@ impl<'a> Shader<'a> {
         if let Some(lit) = ground.baked {
             self.shadow((&ground, &lit), block, &mut scratch, &mut hidden, colors);
             if self.prepared.has_points() {
-                self.hide_points(&ground, block, &mut hidden);
+                self.hide_points((field, lit.normal), block, &mut hidden);
                 self.shine(&ground, &hidden, block, &mut scratch, colors);
             }
         }
@@ -185,31 +190,6 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// Pixels of a material without a texture.
-    fn plain(&self, pair: &QuadPair, material: &Material) -> [PixelLanes; 3] {
-        let mut colors = [Vec3::ZERO; 8];
-        let tint = pair.tint();
-        let tint = |lane: usize| {
-            tint.map_or(Vec3::ONE, |tint| Vec3::from(tint.map(|c| c.as_array()[lane])))
-        };
-        // Helper lanes stay black: nothing adds them to a pixel.
-        for lane in pair.covered() {
-            let base = material.base_color * tint(lane);
-            colors[lane] = match self.lights_at(pair, lane, pixel_center(pair, lane)) {
-                Some(lights) => {
-                    // Nothing bends the normal here: it is z in the surface's own frame.
-                    let mut finish = material.plain_finish();
-                    if material.base_color == Vec3::ZERO {
-                        finish.emissive *= tint(lane);
-                    }
-                    self.lit_color(&finish, (base, false), Vec3::Z, &lights)
-                }
-                None => base,
-            };
-        }
-        in_lanes(&colors)
-    }
-
     /// Pixels by a filter that takes a footprint for a pixel.
     fn filtered(
         &self,
@@ -225,6 +205,9 @@ impl<'a> Shader<'a> {
         self.footprints(with, (block, pairs.clone()), footprints);
         if ground.asks_for_lights() {
             self.list_lights((block, pairs.clone()), lights);
+            if let Some(hidden) = ground.hidden {
+                hidden.dim(lights, (block, pairs.clone()));
+            }
             ground.occlude(footprints, lights);
         }
         // Filter all pairs at once, so that pixels near each other can share work.

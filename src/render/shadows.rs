@@ -17,7 +17,7 @@ use super::ground::{Ground, LitPiece};
 use super::hidden_lights::HiddenLights;
 use super::shade::{ShadeScratch, Shader};
 use crate::light::exact::{Occluders, Receiver};
-use crate::light::{Disc, Vectors, cross, repeat_length};
+use crate::light::{Disc, SmoothTriangle, Vectors, cross, dot, repeat_length};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
 use crate::relief::{HeightField, displacement, march};
 use crate::scene::{Light, Scene};
@@ -77,7 +77,7 @@ impl Shader<'_> {
             }
         }
         // The others are points.
-        let lights = self.scene.lights.iter().zip(&mut hidden_lights.0);
+        let lights = self.scene.lights.iter().zip(&mut hidden_lights.lights);
         let suns = lights.filter(|(light, _)| matches!(light, Light::Sun { .. }));
         suns.zip(hidden.into_iter().flatten()).for_each(|((_, to), hidden)| *to = hidden);
     }
@@ -109,7 +109,7 @@ fn hidden_suns(
     let normal = lit.normal.to_array().map(PixelLanes::splat);
     let points: Vec<_> = block
         .pairs()
-        .map(|pair| Some(places(&pair, ground, &pair.lit()?, &normal)))
+        .map(|pair| Some(places((scene, &pair), ground.prepared.field(), &pair.lit()?, &normal)))
         .collect::<Option<_>>()?;
     let relief = points
         .iter()
@@ -213,6 +213,12 @@ pub(super) fn half_width(steps: &[Vectors; 2], axis: Vec3) -> PixelLanes {
     (along(&steps[0], axis).abs() + along(&steps[1], axis).abs()) * 0.5
 }
 
+/// How far a ray's start may lie from a triangle that it belongs to, without relief: within a pixel
+/// its place is that of the plane that its centre lies in, which neighbours rise above.
+pub(super) fn pixel_reach([column, row]: &[Vectors; 2]) -> PixelLanes {
+    dot(column, column).sqrt() + dot(row, row).sqrt()
+}
+
 /// The least and the greatest of picked lanes.
 pub(super) fn range(lanes: u8, least: PixelLanes, most: PixelLanes) -> [f32; 2] {
     let [least, most] = [least, most].map(PixelLanes::to_array);
@@ -243,21 +249,24 @@ fn moved<const N: usize>(
 }
 
 pub(super) fn places<'a>(
-    pair: &QuadPair,
-    ground: &Ground<'a>,
+    (scene, pair): (&Scene, &QuadPair),
+    field: Option<&'a HeightField>,
     lit: &LitLanes,
     normal: &Vectors,
 ) -> Places<'a> {
     let LitLanes { position, tangent_u, tangent_v, .. } = *lit;
+    let steps_along = steps(&position);
     let all = Places {
         relief: position,
         polygon: position,
-        steps: steps(&position),
+        reach: pixel_reach(&steps_along),
+        steps: steps_along,
         descent: None,
-        reach: PixelLanes::ZERO,
         covered: pair.covered_bits(),
     };
-    let Some(field) = ground.prepared.field() else { return all };
+    let Some(field) = field else {
+        return Places { relief: smooth_places(scene, pair, lit), ..all };
+    };
     let displacement = displacement(&pair.view(), field.relief_depth);
     let repeat = repeat_length(&cross(&tangent_u, &tangent_v));
     let down = repeat * field.relief_depth;
@@ -269,6 +278,19 @@ pub(super) fn places<'a>(
     let descent =
         Some(Descent { field, uv: pair.uv, uv_steps: steps(&pair.uv), displacement, way });
     Places { relief, descent, reach: down * 2.0, ..all }
+}
+
+/// Where light meets the polygons of the pixels of a pair, without relief.
+fn smooth_places(scene: &Scene, pair: &QuadPair, lit: &LitLanes) -> Vectors {
+    let is_back = lit.is_back.to_bitmask();
+    let mut places = lit.position;
+    for lane in pair.covered() {
+        let [mesh, triangle] = pair.planes[lane / 4].triangle.map(|i| i as usize);
+        let triangle = SmoothTriangle::new(&scene.meshes[mesh], triangle);
+        let lift = triangle.lift(of_lane(&lit.position, lane), is_back >> lane & 1 == 1);
+        (0..3).for_each(|c| places[c].as_mut_array()[lane] += lift[c]);
+    }
+    places
 }
 
 impl Hidden {

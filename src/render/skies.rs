@@ -6,7 +6,7 @@
 //! [`LinearSky`]), which the relief's own occlusion is then multiplied with.
 
 use crate::light::exact::Occluders;
-use crate::light::{FrameLanes, LinearSky};
+use crate::light::{LinearSky, SmoothTriangle};
 use crate::raster::QuadPair;
 use crate::scene::{Mesh, Scene};
 use glam::Vec3;
@@ -64,24 +64,23 @@ impl Skies {
         Self { of_mesh: of_mesh.collect() }
     }
 
-    /// At the pixels of a pair; anything where none is covered.
+    /// At the pixels of a pair; anything where none is covered. `None` where the mesh is not curved.
     pub(super) fn of_pair(
         &self,
         (scene, occluders): (&Scene, &Occluders),
         pair: &QuadPair,
-        frame: &FrameLanes,
-    ) -> [LinearSky; 8] {
+    ) -> Option<[LinearSky; 8]> {
         let mut skies = [LinearSky::default(); 8];
-        let Some(lit) = pair.lit() else { return skies };
-        let is_back = frame.is_back.to_bitmask();
+        let lit = pair.lit()?;
+        let is_back = lit.is_back.to_bitmask();
         for lane in pair.covered() {
             let [mesh, triangle] = pair.planes[lane / 4].triangle.map(|i| i as usize);
             let place = Vec3::from(lit.position.map(|axis| axis.as_array()[lane]));
             let side = usize::from(is_back >> lane & 1 == 1);
             let around = Surroundings { scene, occluders, mesh: &scene.meshes[mesh] };
-            skies[lane] = self.of_mesh[mesh].at(around, (triangle, side), place);
+            skies[lane] = self.of_mesh[mesh].at(around, (triangle, side), place)?;
         }
-        skies
+        Some(skies)
     }
 }
 
@@ -121,15 +120,19 @@ impl OfMesh {
     }
 
     /// At a place on a side of a triangle.
-    fn at(&self, around: Surroundings, (triangle, side): (usize, usize), place: Vec3) -> LinearSky {
-        let Some(&(parts, first)) = self.lattices.get(triangle) else {
-            return LinearSky::default();
-        };
+    fn at(
+        &self,
+        around: Surroundings,
+        (triangle, side): (usize, usize),
+        place: Vec3,
+    ) -> Option<LinearSky> {
+        let &(parts, first) = self.lattices.get(triangle)?;
         let corners = around.mesh.triangles[triangle].map(|i| i as usize);
-        let shares = shares(corners.map(|i| around.mesh.positions[i]), place);
+        let shares = SmoothTriangle::new(around.mesh, triangle).shares(place);
         if parts == 1 {
             let of = corners.into_iter().zip(shares);
-            return LinearSky::blend(of.map(|(i, share)| (self.at_vertex(around, i, side), share)));
+            let of = of.map(|(i, share)| (self.at_vertex(around, i, side), share));
+            return Some(LinearSky::blend(of));
         }
         // Find the small triangle of the lattice: from the first corner rows of `parts - i + 1` places.
         let [x, y] = [shares[1], shares[2]].map(|share| share * parts as f32);
@@ -148,7 +151,7 @@ impl OfMesh {
         } else {
             [(at(i + 1, j + 1), fx + fy - 1.0), (at(i, j + 1), 1.0 - fx), (at(i + 1, j), 1.0 - fy)]
         };
-        LinearSky::blend(of.into_iter())
+        Some(LinearSky::blend(of.into_iter()))
     }
 
     /// At a vertex of a small triangle.
@@ -188,15 +191,4 @@ fn sky_at(around: Surroundings, (corners, shares): Place, side: usize) -> Linear
         let is_hidden = || occluders.hide_sky(from, direction, (down, is_turned));
         if color == Vec3::ZERO || is_hidden() { Vec3::ZERO } else { color }
     })
-}
-
-/// The shares of a triangle's corners in a place on it.
-fn shares([a, b, c]: [Vec3; 3], place: Vec3) -> [f32; 3] {
-    let normal = (b - a).cross(c - a);
-    let scale = 1.0 / normal.length_squared().max(f32::MIN_POSITIVE);
-    let share = |p: Vec3, q: Vec3| (p - place).cross(q - place).dot(normal) * scale;
-    // A pixel's centre may lie beside its triangle.
-    let of = [share(b, c), share(c, a), share(a, b)].map(|share| share.clamp(0.0, 1.0));
-    let sum = (of[0] + of[1] + of[2]).max(f32::MIN_POSITIVE);
-    of.map(|share| share / sum)
 }

@@ -29,6 +29,6 @@ mod sequence;
 pub use between::Receiver;
 pub use ceiling::{Ceiling, Spots};
 pub use occluders::{LightRay, Occluders};
-pub use rays::{ExactLight, Hit, Spot};
+pub use rays::{Clearance, ExactLight, Hit, Spot};
 pub use reaching::{LightReaching, Reaching};
 pub use sequence::Sequence;

@@ -26,10 +26,22 @@ pub struct ExactLight<'a> {
 pub struct Hit<'a> {
     /// The polygon where the ray passed it.
     pub point: SurfacePoint,
+    /// Where light leaves it from, without relief.
+    pub clearance: Clearance,
     /// What it does with light.
     pub finish: Finish,
     /// Where it is on the texture, and what is there.
     pub spot: Spot<'a>,
+}
+
+/// How light gets clear of polygons that stand for a smooth surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Clearance {
+    /// From the polygon to where light meets the surface.
+    pub lift: Vec3,
+    /// How far a place may lie below a polygon that belongs to it: a pixel's places are in the plane of
+    /// the polygon that its centre sees, which neighbours rise above.
+    pub reach: f32,
 }
 
 /// A place on a texture.
@@ -107,7 +119,7 @@ impl<'a> Ground<'a> {
         let (camera, eye) = (&exact.scene.camera, exact.scene.camera.viewpoint());
         let [u, v, n] = hit.point.axes().map(|axis| axis.as_dvec3());
         let local = hit.spot.normal.as_dvec3();
-        let position = position.as_dvec3();
+        let position = position.as_dvec3() + hit.clearance.lift.as_dvec3();
         let far = position.abs().max_element() + (position - camera.eye.as_dvec3()).length();
         let mut ground = Self {
             exact,
@@ -115,7 +127,7 @@ impl<'a> Ground<'a> {
             normal: (u * local.x + v * local.y + n * local.z).normalize_or(n),
             to_eye: DVec3::ZERO,
             side: n,
-            reach: far * ROUNDING,
+            reach: far * ROUNDING + f64::from(hit.clearance.reach),
             is_turned: is_back,
             relief: None,
             texture_from_world: DMat3::ZERO,
