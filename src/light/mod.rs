@@ -40,7 +40,7 @@ pub use openings::Openings;
 pub(crate) use openings::{openings_at, unpack_openings};
 pub use sky_lobe::SkyLobe;
 pub use sky_shares::SkyShares;
-pub use smooth::SmoothTriangle;
+pub use smooth::{SmoothTriangle, shares};
 pub use surface_point::{SurfacePoint, unit_axes};
 pub(crate) use vectors::dot;
 pub use vectors::{Vectors, cross, repeat_length};

@@ -32,27 +32,26 @@ impl SmoothTriangle {
         }
     }
 
-    /// The shares of its corners in a place on it.
-    pub fn shares(&self, place: Vec3) -> [f32; 3] {
-        let [a, b, c] = self.corners;
-        let normal = (b - a).cross(c - a);
-        let scale = 1.0 / normal.length_squared().max(f32::MIN_POSITIVE);
-        let share = |p: Vec3, q: Vec3| (p - place).cross(q - place).dot(normal) * scale;
-        // A pixel's centre may lie beside its triangle.
-        let of = [share(b, c), share(c, a), share(a, b)].map(|share| share.clamp(0.0, 1.0));
-        let sum = (of[0] + of[1] + of[2]).max(f32::MIN_POSITIVE);
-        of.map(|share| share / sum)
-    }
-
     /// The way from a place on it to where light meets it, on its front or on its back.
     pub fn lift(&self, place: Vec3, is_back: bool) -> Vec3 {
-        let shares = self.shares(place);
+        let shares = shares(self.corners, place);
         (0..3).fold(Vec3::ZERO, |sum, i| {
             let normal = if is_back { -self.normals[i] } else { self.normals[i] };
             let below = (self.corners[i] - place).dot(normal).max(0.0);
             sum + normal * (below * shares[i])
         })
     }
+}
+
+/// The shares of a triangle's corners in a place on it.
+pub fn shares([a, b, c]: [Vec3; 3], place: Vec3) -> [f32; 3] {
+    let normal = (b - a).cross(c - a);
+    let scale = 1.0 / normal.length_squared().max(f32::MIN_POSITIVE);
+    let share = |p: Vec3, q: Vec3| (p - place).cross(q - place).dot(normal) * scale;
+    // A pixel's centre may lie beside its triangle.
+    let of = [share(b, c), share(c, a), share(a, b)].map(|share| share.clamp(0.0, 1.0));
+    let sum = (of[0] + of[1] + of[2]).max(f32::MIN_POSITIVE);
+    of.map(|share| share / sum)
 }
 
 #[cfg(test)]
@@ -81,7 +80,7 @@ mod tests {
                     "{depth} {above}"
                 );
                 assert!(ball.lift(place, true).length() < 1e-6 * radius, "hollow from behind");
-                let found = ball.shares(place);
+                let found = super::shares(ball.corners, place);
                 assert!((0..3).all(|i| (found[i] - shares[i]).abs() < 1e-4), "{found:?}");
             }
         }

@@ -4,9 +4,9 @@
 //! there is relief. Only the sky that a surface mirrors is dimmed as a whole: what it shows of other
 //! meshes is not drawn.
 
-use super::ground::{in_lanes, point_of};
+use super::ground::{in_lanes, pixel_center, point_of};
 use super::hidden_lights::HiddenLights;
-use super::shade::{ShadeScratch, Shader};
+use super::shade::Shader;
 use crate::raster::{QuadBlock, QuadPair};
 use crate::relief::HeightField;
 use crate::scene::{Material, Sky};
@@ -14,23 +14,25 @@ use crate::simd::PixelLanes;
 use glam::Vec3;
 
 impl Shader<'_> {
-    /// What meshes hide from the pixels of a block whose lights are evaluated place by place, of which
-    /// some have relief nevertheless. Filters that do not ask for lights draw no shadow there.
+    /// What meshes hide from the pixels of a block whose lights are evaluated place by place; some
+    /// have relief nevertheless. `None` by filters that do not ask for lights: they draw no shadow
+    /// there.
     pub(super) fn hidden_by_place(
         &self,
         field: Option<&HeightField>,
         block: &QuadBlock,
-    ) -> HiddenLights {
-        let mut hidden = HiddenLights::none(self.scene.lights.len());
-        if self.traits.asks_for_lights && self.prepared.is_baked() {
-            self.hide_on_curved(field, block, &mut hidden);
-            self.hide_points((field, Vec3::ZERO), block, &mut hidden);
-            if self.scene.sky != Sky::default() {
-                let skies = block.pairs().map(|pair| self.open_sky(&pair));
-                hidden.skies = skies.collect::<Option<_>>().unwrap_or_default();
-            }
+    ) -> Option<HiddenLights> {
+        if !self.traits.asks_for_lights || !self.prepared.is_baked() {
+            return None;
         }
-        hidden
+        let mut hidden = HiddenLights::none(self.scene.lights.len());
+        self.hide_on_curved(field, block, &mut hidden);
+        self.hide_points((field, Vec3::ZERO), block, &mut hidden);
+        if self.scene.sky != Sky::default() {
+            let skies = block.pairs().map(|pair| self.open_sky(&pair));
+            hidden.skies = skies.collect::<Option<_>>().unwrap_or_default();
+        }
+        Some(hidden)
     }
 
     /// The shares of the sky that get past all meshes to the pixels of a pair of a curved mesh.
@@ -54,18 +56,10 @@ impl Shader<'_> {
         &self,
         block: &QuadBlock,
         material: &Material,
-        scratch: &mut ShadeScratch,
         colors: &mut Vec<[PixelLanes; 3]>,
     ) {
-        let lights = &mut scratch.lights;
-        lights.clear();
-        if self.is_lit() {
-            let all = 0..block.num_pairs();
-            self.list_lights((block, all.clone()), lights);
-            self.hidden_by_place(None, block).dim(lights, (block, all));
-        }
-        let mut lights = lights.iter();
-        colors.extend(block.pairs().map(|pair| {
+        let hidden = if self.is_lit() { self.hidden_by_place(None, block) } else { None };
+        colors.extend(block.pairs().enumerate().map(|(i, pair)| {
             let mut colors = [Vec3::ZERO; 8];
             let tint = pair.tint();
             let tint = |lane: usize| {
@@ -74,8 +68,12 @@ impl Shader<'_> {
             // Helper lanes stay black: nothing adds them to a pixel.
             for lane in pair.covered() {
                 let base = material.base_color * tint(lane);
-                colors[lane] = match lights.next() {
+                let mut lights = self.lights_at(&pair, lane, pixel_center(&pair, lane));
+                colors[lane] = match &mut lights {
                     Some(lights) => {
+                        if let Some(hidden) = &hidden {
+                            hidden.dim_at(lights, [i, lane]);
+                        }
                         // Nothing bends the normal here: it is z in the surface's own frame.
                         let mut finish = material.plain_finish();
                         if material.base_color == Vec3::ZERO {

@@ -32,15 +32,20 @@ impl HiddenLights {
         if self.lights.iter().all(Vec::is_empty) && self.skies.is_empty() {
             return;
         }
-        let pixels = pairs.flat_map(|i| block.pair(i).covered().map(move |lane| (i, lane)));
-        for (lights, (pair, lane)) in lights.iter_mut().zip(pixels) {
-            for (light, hidden) in lights.lights.iter_mut().zip(&self.lights) {
-                let hidden = hidden.get(pair).map_or(0.0, |hidden| hidden.as_array()[lane]);
-                light.intensity *= 1.0 - hidden;
-            }
-            if let Some(skies) = self.skies.get(pair) {
-                lights.occlude(skies[lane]);
-            }
+        let pixels = pairs.flat_map(|i| block.pair(i).covered().map(move |lane| [i, lane]));
+        for (lights, place) in lights.iter_mut().zip(pixels) {
+            self.dim_at(lights, place);
+        }
+    }
+
+    /// The same at one pixel, by its pair and lane.
+    pub(super) fn dim_at(&self, lights: &mut LocalLights, [pair, lane]: [usize; 2]) {
+        for (light, hidden) in lights.lights.iter_mut().zip(&self.lights) {
+            let hidden = hidden.get(pair).map_or(0.0, |hidden| hidden.as_array()[lane]);
+            light.intensity *= 1.0 - hidden;
+        }
+        if let Some(skies) = self.skies.get(pair) {
+            lights.occlude(skies[lane]);
         }
     }
 }

@@ -113,7 +113,7 @@ impl<'a> Shader<'a> {
             }));
         }
         let Some(ground) = ground else {
-            return self.plain(block, material, &mut scratch, colors);
+            return self.plain(block, material, colors);
         };
         let start = colors.len();
         let num_lights = if ground.is_lit { self.scene.lights.len() } else { 0 };
@@ -126,8 +126,8 @@ impl<'a> Shader<'a> {
             self.hide_points((field, Vec3::ZERO), block, &mut hidden);
             self.swept(&ground, (swept, &hidden), block, &mut scratch, colors);
         } else if ground.asks_for_lights() {
-            hidden = self.hidden_by_place(field, block);
-            let ground = Ground { hidden: Some(&hidden), ..ground };
+            let hidden = self.hidden_by_place(field, block);
+            let ground = Ground { hidden: hidden.as_ref(), ..ground };
             self.textured(&ground, block, &mut scratch, colors);
         } else {
             self.textured(&ground, block, &mut scratch, colors);

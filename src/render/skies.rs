@@ -6,7 +6,7 @@
 //! [`LinearSky`]), which the relief's own occlusion is then multiplied with.
 
 use crate::light::exact::Occluders;
-use crate::light::{LinearSky, SmoothTriangle};
+use crate::light::{LinearSky, shares};
 use crate::raster::QuadPair;
 use crate::scene::{Mesh, Scene};
 use glam::Vec3;
@@ -128,7 +128,7 @@ impl OfMesh {
     ) -> Option<LinearSky> {
         let &(parts, first) = self.lattices.get(triangle)?;
         let corners = around.mesh.triangles[triangle].map(|i| i as usize);
-        let shares = SmoothTriangle::new(around.mesh, triangle).shares(place);
+        let shares = shares(corners.map(|i| around.mesh.positions[i]), place);
         if parts == 1 {
             let of = corners.into_iter().zip(shares);
             let of = of.map(|(i, share)| (self.at_vertex(around, i, side), share));

@@ -36,6 +36,9 @@ pub struct Spots {
     pub reach: f32,
 }
 
+/// What rounding may take from the height of a plane over a cell, in cells along it.
+const ROUNDING: f32 = 1e-2;
+
 /// Most cells a side that are looked at.
 const MOST_CELLS: usize = 8;
 
@@ -75,19 +78,39 @@ impl Ceiling {
         all
     }
 
-    /// Raises the cells in a triangle's box to its highest corner.
+    /// Raises the cells in a triangle's box to its highest corner, and no higher than its plane goes
+    /// there.
     fn add(&mut self, [a, b, c]: &[Vec3; 3]) {
         let to_light = self.disc.to_middle;
         let highest = [a, b, c].into_iter().fold(f32::MIN, |most, p| most.max(to_light.dot(*p)));
-        let class = usize::from((*b - *a).cross(*c - *a).dot(to_light) <= 0.0);
+        let normal = (*b - *a).cross(*c - *a);
+        let facing = normal.dot(to_light);
+        let class = usize::from(facing <= 0.0);
+        let slopes = self.across.map(|axis| -axis.dot(normal) / facing);
+        // How far the plane rises from the middle of a cell, and what rounding may take from it.
+        let size = 1.0 / self.scale;
+        let rise = (slopes[0].abs() + slopes[1].abs()) * size * (0.5 + ROUNDING);
+        let [x, y] = self.across.map(|axis| axis.dot(*a));
+        let at = |i: usize, axis: usize| (i as f32 + 0.5) * size + self.origin[axis];
+        let plane = |column: usize, row: usize| {
+            let along = (at(column, 0) - x) * slopes[0] + (at(row, 1) - y) * slopes[1];
+            to_light.dot(*a) + along + rise
+        };
         let ranges: [[f32; 2]; 2] = self.across.map(|axis| {
             let [a, b, c] = [a, b, c].map(|p| axis.dot(*p));
             [a.min(b).min(c), a.max(b).max(c)]
         });
         let Some([columns, rows]) = self.cells(&ranges) else { return };
-        for y in rows[0]..=rows[1] {
-            for cell in &mut self.levels[0][y * SIDE..][columns[0]..=columns[1]] {
-                cell[class] = cell[class].max(highest);
+        let most = |column, row| {
+            let plane = plane(column, row);
+            // An edge-on triangle has none.
+            if plane < highest { plane } else { highest }
+        };
+        for row in rows[0]..=rows[1] {
+            for column in columns[0]..=columns[1] {
+                let most = most(column, row);
+                let cell = &mut self.levels[0][row * SIDE + column][class];
+                *cell = cell.max(most);
             }
         }
     }
