@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 /// Directions that the sky is seen in, over the half space above a polygon: each stands for the
 /// same share of what lights it.
-const SKY_DIRECTIONS: usize = 64;
+const SKY_DIRECTIONS: usize = 128;
 
 /// Points of a sun's disc for each half degree of its size, and the most of them. A shadow of the
 /// real sun goes in so many steps from light to dark, each of which is as wide as what cuts it off

@@ -58,9 +58,18 @@ const NUM_VECTORS: usize = MOST_PIXELS / 8;
 const FINE_BINS: f32 = 256.0;
 
 /// Bins along the shortest ellipse of a patch that serve a picture, for each texel that the
-/// settings ask for across: unlit and lit, where lights are asked for each bin; and the fewest.
-const BINS: [f32; 2] = [0.375, 1.6];
+/// settings ask for across: unlit, lit for good, and lit, where lights are asked for each bin; and the
+/// fewest.
+const BINS: f32 = 0.375;
+const BAKED_BINS: f32 = 0.6;
+const LIT_BINS: f32 = 1.6;
 const LEAST_BINS: f32 = 4.0;
+
+/// Lines of what is lit for good, as a share of those of what is not. Shadows have sharper edges than
+/// albedo, and bins pay better than lines there. Measured, an upright strip of the floor at 1280x720
+/// under a sun 30 degrees high, in times of the unlit frame: bins and lines as unlit 44.9 dB in 1.13,
+/// these 46.8 in 1.18, bins alone 46.8 in 1.25, all lines and 1.4 times as many bins 46.5 in 1.20.
+const BAKED_LINES: f32 = 0.85;
 
 /// Buffers of the filter, kept between calls.
 #[derive(Clone, Debug, Default)]
@@ -88,7 +97,8 @@ pub(super) fn colors(
     let is_curved = batch.curved.is_some();
     let far = far_field(prepared, horizon, batch.is_lit() || is_curved);
     let far = far.as_deref();
-    let num_bins = if batch.is_alone { FINE_BINS } else { picture_bins(horizon, batch.is_lit()) };
+    let num_bins =
+        if batch.is_alone { FINE_BINS } else { picture_bins(prepared, horizon, batch.is_lit()) };
     let (mut lights, mut to_eyes) = (batch.lights, batch.to_eyes.iter());
     let mut num_rows = 0;
     let chunks = batch.pixels.chunks(NUM_VECTORS).zip(out.chunks_mut(NUM_VECTORS));
@@ -150,7 +160,7 @@ pub(super) fn levels(
         base_ellipses(prepared.surface(), pixels, horizon, base);
         share_out(prepared.surface(), far.as_deref(), (pixels, base), horizon, (shares, near));
         let mut levels = Vec::with_capacity(near.len());
-        let num_bins = picture_bins(horizon, is_lit);
+        let num_bins = picture_bins(prepared, horizon, is_lit);
         patches(prepared, (pixels, base), horizon, num_bins, is_lit).levels(
             near,
             patch,
@@ -215,8 +225,13 @@ fn share_out(
 }
 
 /// Bins along the shortest ellipse of a patch that serve a picture.
-fn picture_bins(horizon: &Horizon, is_lit: bool) -> f32 {
-    (horizon.lines as f32 * BINS[usize::from(is_lit)]).max(LEAST_BINS)
+fn picture_bins(prepared: &Prepared, horizon: &Horizon, is_lit: bool) -> f32 {
+    let bins = match is_lit {
+        true => LIT_BINS,
+        false if prepared.is_lit() => BAKED_BINS,
+        false => BINS,
+    };
+    (horizon.lines as f32 * bins).max(LEAST_BINS)
 }
 
 fn patches<'a>(
@@ -238,6 +253,7 @@ fn patches<'a>(
         base,
         horizon,
         num_bins,
+        num_lines: horizon.lines as f32 * if prepared.is_lit() { BAKED_LINES } else { 1.0 },
         is_lit,
         shows_light: is_lit || prepared.is_lit(),
         is_alone: false,

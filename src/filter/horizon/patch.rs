@@ -105,6 +105,8 @@ pub(super) struct Patches<'a> {
     pub(super) horizon: &'a Horizon,
     /// Bins along the shortest ellipse: how finely the kernel is cut.
     pub(super) num_bins: f32,
+    /// Lines across the widest, for each of [`LINES`].
+    pub(super) num_lines: f32,
     pub(super) is_lit: bool,
     /// Whether what is swept shows light: sweeps are then a level finer than their footprints ask for.
     pub(super) shows_light: bool,
@@ -208,11 +210,10 @@ impl<'a> Patches<'a> {
         }
         // Set the lines so close that sixteen lie within two loads where they are farthest apart.
         let most_scale = frame.greatest_scale([extent.q[0] - 1.0, extent.q[0] + num_rows + 1.0])?;
-        let lines = self.horizon.lines as f32;
-        let num_lines = (LINES[0] * lines).max(LINES[1]);
+        let num_lines = (LINES[0] * self.num_lines).max(LINES[1]);
         // Lines that are a texel apart see all that there is.
         let num_lines = if level == 0 {
-            num_lines.max((2.0 * extent.half_width).min(BASE_LINES * lines))
+            num_lines.max((2.0 * extent.half_width).min(BASE_LINES * self.num_lines))
         } else {
             num_lines
         };
