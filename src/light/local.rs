@@ -1,9 +1,16 @@
 //! Filtered albedo and normal with lights to a colour.
 
 use super::reflection::{self, Fresnel, LEAST_COSINE, Reflectance};
+use super::sky_lobe::WIDE;
 use super::surface_point::SurfacePoint;
 use crate::scene::{Eye, Finish, Light, Sky};
 use glam::Vec3;
+
+/// How far a lobe's middle lies toward the normal for each `a`: where what a mirror shows is taken
+/// from, and what lies around that. Measured with [`WIDE`], a sphere of metal under gradient skies against
+/// 256 samples, by roughness: 48.2 dB at 0.1, 41.3 at 0.3, 39.6 at 0.5, 46.4 at 0.8, 39.0 at 1; not bent and
+/// with 1 in place of [`WIDE`] 50.4, 39.2, 30.7, 28.4 and 31.0.
+const BEND: [f32; 2] = [0.5, 3.0];
 
 /// The lights as one place of a surface sees them, in the frame of its texture: x along u, y along
 /// v, z off the surface.
@@ -139,15 +146,17 @@ impl LocalLights {
     }
 
     /// The sky that a surface reflects, a blend of what a mirror shows and, the rougher, of all
-    /// that lies around that.
+    /// that lies around that. What goes into the surface is not part of a lobe, so its middle lies
+    /// nearer to the normal, the more the wider it is ([`BEND`]).
     fn mirrored(&self, normal: Vec3, alpha_squared: f32, sky: &Sky) -> Vec3 {
         if sky.is_uniform() {
             return self.ambient;
         }
+        let alpha = alpha_squared.sqrt();
         let direction = normal * (2.0 * normal.dot(self.to_eye)) - self.to_eye;
-        let direction = self.in_world(direction);
-        let (sharp, wide) = (sky.radiance(direction), sky.irradiance(direction));
-        (sharp + (wide - sharp) * alpha_squared.sqrt()) * self.occlusion
+        let [sharp, wide] = BEND.map(|bend| self.in_world(direction + normal * (alpha * bend)));
+        let (sharp, wide) = (sky.radiance(sharp), sky.irradiance(wide));
+        (sharp + (wide - sharp) * (WIDE * alpha).min(1.0)) * self.occlusion
     }
 
     /// A direction of the frame in the world.

@@ -41,7 +41,7 @@ struct LocalSky {
 }
 
 /// The share of what lies all around in what a lobe shows of a gradient, for each `a`.
-const WIDE: f32 = 1.5;
+pub(super) const WIDE: f32 = 1.5;
 
 impl SkyLobe {
     /// Of a sky on a surface of some roughness, 0 to 1, that reflects so much of light along it.

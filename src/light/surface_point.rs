@@ -34,10 +34,11 @@ impl SurfacePoint {
 /// unit normal.
 ///
 /// They stand at right angles even where u and v do not, as in glTF 2.0: only then are cosines
-/// between directions of the frame those of the world.
+/// between directions of the frame those of the world. Without a texture any axes do.
 pub fn unit_axes([u, v]: [Vec3; 2], normal: Vec3) -> [Vec3; 3] {
     // Take off what interpolated tangents have along the normal.
-    let u = (u - normal * u.dot(normal)).normalize_or_zero();
+    let u = (u - normal * u.dot(normal)).try_normalize();
+    let u = u.unwrap_or_else(|| normal.any_orthonormal_vector());
     let across = normal.cross(u);
     [u, if across.dot(v) < 0.0 { -across } else { across }, normal]
 }
