@@ -4,11 +4,12 @@ use super::ray::Ray;
 use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::geometry::{self, Geometry};
 use crate::light::SurfacePoint;
+use crate::light::exact::Clearance;
 use crate::raster::{
     AttributePlanes, CenterTile, Centers, Drawn, Follow, QuadPair, Rasterizer, TileGrid,
 };
 use crate::relief::{HeightField, displacement_over, finite, march};
-use crate::render::{Outlines, Passages, PreparedScene, surface_point};
+use crate::render::{Outlines, Passages, PreparedScene, clearance, surface_point};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Region, Settings};
 use crate::shell::{Met, ReliefHit};
@@ -77,8 +78,17 @@ impl Ground {
 
     /// The polygon's point at the pixel's centre, or above its hit.
     pub(super) fn point(&self) -> Option<SurfacePoint> {
-        let of_polygon = || surface_point(&self.planes, self.pixel.map(|c| c as f32 + 0.5));
+        let of_polygon = || surface_point(&self.planes, self.center());
         self.past.map(|(_, point)| point).or_else(of_polygon)
+    }
+
+    /// How light gets clear of the polygon at that point, where there is no relief.
+    pub(super) fn clearance(&self, scene: &Scene, point: &SurfacePoint) -> Clearance {
+        clearance(scene, &self.planes, (self.center(), point))
+    }
+
+    fn center(&self) -> [f32; 2] {
+        self.pixel.map(|c| c as f32 + 0.5)
     }
 
     /// The pixel over the relief of `field`, or over the bare polygon.

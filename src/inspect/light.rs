@@ -50,17 +50,17 @@ pub(super) fn plain_hit(material: &Material, point: SurfacePoint) -> Hit<'static
 }
 
 impl PixelLight {
-    /// Of a pixel of a material.
+    /// Of a pixel and what it sees.
     pub(super) fn new(
         scene: &Scene,
-        (material, prepared): (&Material, &Prepared),
-        (seen, point): (&QuadPixel, SurfacePoint),
+        prepared: &Prepared,
+        (seen, hit): (&QuadPixel, &Hit),
         max_anisotropy: f32,
     ) -> Self {
         let occluders = Occluders::new(scene);
         let exact = ExactLight { scene, occluders: &occluders };
-        let reaching = exact.reaching(&hit_of(material, prepared, seen, point), RAYS);
-        let main = reaching.main();
+        let reaching = exact.reaching(hit, RAYS);
+        let (main, point) = (reaching.main(), &hit.point);
         let cut = main.zip(prepared.field()).and_then(|(main, field)| {
             let to_light = match scene.lights[main] {
                 Light::Sun { to_light, .. } => to_light,

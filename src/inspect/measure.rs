@@ -13,7 +13,7 @@ use crate::light::exact::{ExactLight, Hit};
 use crate::raster::{Drawn, Follow, Pool, QuadBlock, QuadPair, Rasterizer};
 use crate::relief::{finite, stretch};
 use crate::render::{
-    Outlines, Passages, PreparedScene, Shader, pixel_center, point_of, surface_point,
+    Outlines, Passages, PreparedScene, Shader, clearance, pixel_center, point_of, surface_point,
 };
 use crate::scene::{Material, Scene};
 use crate::settings::{Lighting, Settings};
@@ -269,7 +269,11 @@ impl Probe<'_> {
         let Some(point) = above.or_else(of_polygon) else { return [0.0; 3] };
         let occluders = self.prepared.occluders(self.scene);
         let exact = ExactLight { scene: self.scene, occluders };
-        let reaching = exact.reaching(&hit(point), RAYS);
+        let mut hit = hit(point);
+        if hit.spot.relief.is_none() {
+            hit.clearance = clearance(self.scene, planes, (pixel_center(pair, lane), &point));
+        }
+        let reaching = exact.reaching(&hit, RAYS);
         match self.view {
             View::Shadow => [reaching.part(), 0.0, 0.0],
             View::Occlusion => [reaching.open, 0.0, 0.0],

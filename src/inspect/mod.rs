@@ -38,10 +38,12 @@ pub use sets::Sets;
 
 use crate::error::{Error, Result};
 use crate::filter::Prepared;
+use crate::light::exact::{Clearance, Hit};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::texture::FULL_F32;
 use ground::Ground;
+use light::hit_of;
 
 /// What one pixel sees.
 #[derive(Clone, Debug)]
@@ -100,8 +102,14 @@ pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Insp
     let most = settings.filter.max_anisotropy();
     let cut = Cut::new(prepared.surface(), &seen, sets.level, most);
     let point = ground.point().filter(|_| settings.lighting == Lighting::Lit);
-    let light =
-        point.map(|point| PixelLight::new(scene, (material, &prepared), (&seen, point), most));
+    let light = point.map(|point| {
+        let clearance = match prepared.field() {
+            Some(_) => Clearance::default(),
+            None => ground.clearance(scene, &point),
+        };
+        let hit = Hit { clearance, ..hit_of(material, &prepared, &seen, point) };
+        PixelLight::new(scene, &prepared, (&seen, &hit), most)
+    });
     Ok(Inspection {
         pixel,
         mesh: ground.mesh,

@@ -1,13 +1,13 @@
 //! Pixels under the truth's light: every sample of the screen is lit by rays from its own hit.
 
-use super::ground::{Ground, eval, in_lanes, of_hits, pixel_center, surface_point};
+use super::ground::{Ground, clearance, eval, in_lanes, of_hits, pixel_center, surface_point};
 use super::outlines::Outlines;
 use crate::filter::{Batch, Filtered, SampleOffsets, Scratch};
 use crate::footprint::{Footprint, FootprintRule, Footprints};
+use crate::light::SurfacePoint;
 use crate::light::exact::{Clearance, ExactLight, Hit, Sequence, Spot};
-use crate::light::{SmoothTriangle, SurfacePoint};
 use crate::raster::{AttributePlanes, QuadPair};
-use crate::scene::{Material, Scene};
+use crate::scene::Material;
 use crate::settings::Filter;
 use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
@@ -21,26 +21,6 @@ struct Samples<'a> {
     /// The number of the first in the pixel.
     first: u32,
     sequence: Sequence,
-}
-
-impl Samples<'_> {
-    /// The triangle that they lie in.
-    fn triangle(&self, scene: &Scene) -> SmoothTriangle {
-        let [mesh, triangle] = self.planes.triangle.map(|i| i as usize);
-        SmoothTriangle::new(&scene.meshes[mesh], triangle)
-    }
-
-    /// How far their plane goes in the world from a pixel to the next, along both axes together.
-    fn step(&self) -> f32 {
-        let [x, y] = [&self.x, &self.y].map(|lanes| lanes.as_array()[0]);
-        let places = [[x, y], [x + 1.0, y], [x, y + 1.0]];
-        let [here, column, row] = places.map(|place| surface_point(self.planes, place));
-        let Some(here) = here else { return 0.0 };
-        let to = |point: Option<SurfacePoint>| {
-            point.map_or(0.0, |point| (point.position - here.position).length())
-        };
-        to(column) + to(row)
-    }
 }
 
 /// Draws pixels of one material by samples that are each lit exactly.
@@ -135,7 +115,6 @@ impl Exact<'_> {
     ) -> (Vec3, f32) {
         let (mut sum, mut num_found) = (Vec3::ZERO, 0.0);
         let has_relief = self.ground.is_some_and(|ground| ground.prepared.field().is_some());
-        let polygon = (!has_relief).then(|| (samples.triangle(self.light.scene), samples.step()));
         for lane in set_bits(covered) {
             let place = [samples.x.as_array()[lane], samples.y.as_array()[lane]];
             // Planes of lit frames have all that makes a point.
@@ -143,10 +122,10 @@ impl Exact<'_> {
             let Some(point) = point(lane).or_else(of_polygon) else { continue };
             let spot = spot(lane);
             let finish = self.material.finish(|map| map.at(spot.place));
-            let clearance = polygon.map_or(Clearance::default(), |(triangle, reach)| Clearance {
-                lift: triangle.lift(point.position, point.is_back),
-                reach,
-            });
+            let clearance = match has_relief {
+                true => Clearance::default(),
+                false => clearance(self.light.scene, samples.planes, (place, &point)),
+            };
             let hit = Hit { point, clearance, finish, spot };
             sum += self.light.shade(&hit, &samples.sequence, samples.first + lane as u32);
             num_found += 1.0;

@@ -6,9 +6,10 @@ use super::open_sky::OpenSky;
 use super::outlines::Outlines;
 use crate::filter::Prepared;
 use crate::footprint::{Footprint, Footprints};
-use crate::light::{LocalLights, Luster, SurfacePoint};
+use crate::light::exact::Clearance;
+use crate::light::{LocalLights, Luster, SmoothTriangle, SurfacePoint};
 use crate::raster::{AttributePlanes, LitLanes, LitPlanes, Plane, QuadPair};
-use crate::scene::{Finish, Material};
+use crate::scene::{Finish, Material, Scene};
 use crate::shell::ReliefHit;
 use crate::simd::PixelLanes;
 use crate::texture::{FULL_F32, Surface, Texel};
@@ -193,4 +194,17 @@ pub(crate) fn surface_point(planes: &AttributePlanes, [x, y]: [f32; 2]) -> Optio
     let at = |planes: &[Plane; 3]| Vec3::from(planes.map(|[a, b, c]| (a * x + b * y + c) * w));
     let tangents = [at(tangent_u), at(tangent_v)];
     Some(SurfacePoint { position: at(position), normal: at(normal), tangents, is_back: *is_back })
+}
+
+/// How light gets clear of a polygon without relief, from its point at a place of the screen.
+pub(crate) fn clearance(
+    scene: &Scene,
+    planes: &AttributePlanes,
+    ([x, y], point): ([f32; 2], &SurfacePoint),
+) -> Clearance {
+    let [mesh, triangle] = planes.triangle.map(|i| i as usize);
+    let triangle = SmoothTriangle::new(&scene.meshes[mesh], triangle);
+    let next = [[x + 1.0, y], [x, y + 1.0]].map(|place| surface_point(planes, place));
+    let steps = next.map(|next| next.map_or(0.0, |p| (p.position - point.position).length()));
+    Clearance { lift: triangle.lift(point.position, point.is_back), reach: steps[0] + steps[1] }
 }

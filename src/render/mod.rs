@@ -32,7 +32,7 @@ mod shadows;
 mod skies;
 mod strays;
 
-pub(crate) use ground::{pixel_center, point_of, surface_point};
+pub(crate) use ground::{clearance, pixel_center, point_of, surface_point};
 pub(crate) use outlines::Outlines;
 pub(crate) use passages::Passages;
 pub(crate) use prepared::PreparedScene;
