@@ -5,10 +5,9 @@
 //! in the way: where nothing is, no ray is sent and nothing of the relief is looked for.
 
 use super::hidden_lights::HiddenLights;
+use super::places::{Places, along, half_width, of_lane, pixel_reach, places, range, steps};
 use super::shade::Shader;
-use super::shadows::{
-    Hidden, Places, along, half_width, of_lane, pixel_reach, places, range, steps,
-};
+use super::shadows::Hidden;
 use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
 use crate::light::{FrameLanes, Vectors, cross, repeat_length};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};

@@ -23,6 +23,7 @@ mod mapped;
 mod open_sky;
 mod outlines;
 mod passages;
+mod places;
 mod points;
 mod prepared;
 mod reflections;

@@ -7,8 +7,9 @@
 
 use super::ground::{Ground, Swept};
 use super::hidden_lights::HiddenLights;
+use super::places::{FIRST, Places, RAYS, of_lane, places};
 use super::shade::{PAIRS_AT_ONCE, ShadeScratch, Shader};
-use super::shadows::{FIRST, Places, RAYS, edges, of_lane, places};
+use super::shadows::edges;
 use crate::filter::{Batch, Filtered};
 use crate::light::FrameLanes;
 use crate::light::exact::{LightRay, Occluders, Receiver};
