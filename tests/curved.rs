@@ -151,9 +151,8 @@ fn ball() -> Scene {
         [[a, a + num_around, b + num_around], [a, b + num_around, b]]
     });
     let (positions, triangles) = (rows.collect(), triangles.collect());
-    let normals = |ball: &Mesh| ball.positions.clone();
     let mut ball = Mesh::new(positions, vec![], vec![], triangles);
-    ball.normals = normals(&ball);
+    ball.normals = ball.positions.clone();
     let mut scene = torus(cobbles(4, 1), &[], Vec3::ZERO);
     scene.meshes = vec![ball];
     scene.camera.eye = Vec3::new(0.0, 0.5, 2.2);

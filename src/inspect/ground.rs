@@ -4,7 +4,7 @@ use super::ray::Ray;
 use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::geometry::{self, Geometry};
 use crate::light::SurfacePoint;
-use crate::light::exact::Clearance;
+use crate::light::exact::{Clearance, Hit};
 use crate::raster::{
     AttributePlanes, CenterTile, Centers, Drawn, Follow, QuadPair, Rasterizer, TileGrid,
 };
@@ -82,9 +82,9 @@ impl Ground {
         self.past.map(|(_, point)| point).or_else(of_polygon)
     }
 
-    /// How light gets clear of the polygon at that point, where there is no relief.
-    pub(super) fn clearance(&self, scene: &Scene, point: &SurfacePoint) -> Clearance {
-        clearance(scene, &self.planes, (self.center(), point))
+    /// How light gets clear of the polygon at that point.
+    pub(super) fn clearance(&self, scene: &Scene, hit: &Hit) -> Clearance {
+        clearance(scene, (&self.planes, hit.spot.relief), (self.center(), &hit.point))
     }
 
     fn center(&self) -> [f32; 2] {

@@ -270,9 +270,8 @@ impl Probe<'_> {
         let occluders = self.prepared.occluders(self.scene);
         let exact = ExactLight { scene: self.scene, occluders };
         let mut hit = hit(point);
-        if hit.spot.relief.is_none() {
-            hit.clearance = clearance(self.scene, planes, (pixel_center(pair, lane), &point));
-        }
+        let at = (pixel_center(pair, lane), &point);
+        hit.clearance = clearance(self.scene, (planes, hit.spot.relief), at);
         let reaching = exact.reaching(&hit, RAYS);
         match self.view {
             View::Shadow => [reaching.part(), 0.0, 0.0],

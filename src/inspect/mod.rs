@@ -38,7 +38,6 @@ pub use sets::Sets;
 
 use crate::error::{Error, Result};
 use crate::filter::Prepared;
-use crate::light::exact::{Clearance, Hit};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::texture::FULL_F32;
@@ -103,11 +102,8 @@ pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Insp
     let cut = Cut::new(prepared.surface(), &seen, sets.level, most);
     let point = ground.point().filter(|_| settings.lighting == Lighting::Lit);
     let light = point.map(|point| {
-        let clearance = match prepared.field() {
-            Some(_) => Clearance::default(),
-            None => ground.clearance(scene, &point),
-        };
-        let hit = Hit { clearance, ..hit_of(material, &prepared, &seen, point) };
+        let mut hit = hit_of(material, &prepared, &seen, point);
+        hit.clearance = ground.clearance(scene, &hit);
         PixelLight::new(scene, &prepared, (&seen, &hit), most)
     });
     Ok(Inspection {

@@ -11,7 +11,7 @@
 //!          \ ------o------ /       o the place on the triangle
 //! ```
 
-use crate::scene::Mesh;
+use crate::scene::Scene;
 use glam::Vec3;
 
 /// A triangle of a mesh and the normals at its corners.
@@ -23,9 +23,10 @@ pub struct SmoothTriangle {
 }
 
 impl SmoothTriangle {
-    /// A triangle of a mesh, by its index.
-    pub fn new(mesh: &Mesh, triangle: usize) -> Self {
-        let corners = mesh.triangles[triangle].map(|i| i as usize);
+    /// A triangle of a scene, by the index of its mesh and in it.
+    pub fn new(scene: &Scene, [mesh, triangle]: [u32; 2]) -> Self {
+        let mesh = &scene.meshes[mesh as usize];
+        let corners = mesh.triangles[triangle as usize].map(|i| i as usize);
         Self {
             corners: corners.map(|i| mesh.positions[i]),
             normals: corners.map(|i| mesh.normals[i].normalize_or_zero()),
@@ -44,7 +45,7 @@ impl SmoothTriangle {
 }
 
 /// The shares of a triangle's corners in a place on it.
-pub fn shares([a, b, c]: [Vec3; 3], place: Vec3) -> [f32; 3] {
+pub(crate) fn shares([a, b, c]: [Vec3; 3], place: Vec3) -> [f32; 3] {
     let normal = (b - a).cross(c - a);
     let scale = 1.0 / normal.length_squared().max(f32::MIN_POSITIVE);
     let share = |p: Vec3, q: Vec3| (p - place).cross(q - place).dot(normal) * scale;

@@ -5,7 +5,7 @@ use super::outlines::Outlines;
 use crate::filter::{Batch, Filtered, SampleOffsets, Scratch};
 use crate::footprint::{Footprint, FootprintRule, Footprints};
 use crate::light::SurfacePoint;
-use crate::light::exact::{Clearance, ExactLight, Hit, Sequence, Spot};
+use crate::light::exact::{ExactLight, Hit, Sequence, Spot};
 use crate::raster::{AttributePlanes, QuadPair};
 use crate::scene::Material;
 use crate::settings::Filter;
@@ -114,7 +114,6 @@ impl Exact<'_> {
         spot: impl Fn(usize) -> Spot<'a>,
     ) -> (Vec3, f32) {
         let (mut sum, mut num_found) = (Vec3::ZERO, 0.0);
-        let has_relief = self.ground.is_some_and(|ground| ground.prepared.field().is_some());
         for lane in set_bits(covered) {
             let place = [samples.x.as_array()[lane], samples.y.as_array()[lane]];
             // Planes of lit frames have all that makes a point.
@@ -122,10 +121,8 @@ impl Exact<'_> {
             let Some(point) = point(lane).or_else(of_polygon) else { continue };
             let spot = spot(lane);
             let finish = self.material.finish(|map| map.at(spot.place));
-            let clearance = match has_relief {
-                true => Clearance::default(),
-                false => clearance(self.light.scene, samples.planes, (place, &point)),
-            };
+            let on = (samples.planes, spot.relief);
+            let clearance = clearance(self.light.scene, on, (place, &point));
             let hit = Hit { point, clearance, finish, spot };
             sum += self.light.shade(&hit, &samples.sequence, samples.first + lane as u32);
             num_found += 1.0;

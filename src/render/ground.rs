@@ -9,6 +9,7 @@ use crate::footprint::{Footprint, Footprints};
 use crate::light::exact::Clearance;
 use crate::light::{LocalLights, Luster, SmoothTriangle, SurfacePoint};
 use crate::raster::{AttributePlanes, LitLanes, LitPlanes, Plane, QuadPair};
+use crate::relief::HeightField;
 use crate::scene::{Finish, Material, Scene};
 use crate::shell::ReliefHit;
 use crate::simd::PixelLanes;
@@ -196,14 +197,17 @@ pub(crate) fn surface_point(planes: &AttributePlanes, [x, y]: [f32; 2]) -> Optio
     Some(SurfacePoint { position: at(position), normal: at(normal), tangents, is_back: *is_back })
 }
 
-/// How light gets clear of a polygon without relief, from its point at a place of the screen.
+/// How light gets clear of a polygon from its point at a place of the screen: out of a relief it finds
+/// its way by that.
 pub(crate) fn clearance(
     scene: &Scene,
-    planes: &AttributePlanes,
+    (planes, relief): (&AttributePlanes, Option<&HeightField>),
     ([x, y], point): ([f32; 2], &SurfacePoint),
 ) -> Clearance {
-    let [mesh, triangle] = planes.triangle.map(|i| i as usize);
-    let triangle = SmoothTriangle::new(&scene.meshes[mesh], triangle);
+    if relief.is_some() {
+        return Clearance::default();
+    }
+    let triangle = SmoothTriangle::new(scene, planes.triangle);
     let next = [[x + 1.0, y], [x, y + 1.0]].map(|place| surface_point(planes, place));
     let steps = next.map(|next| next.map_or(0.0, |p| (p.position - point.position).length()));
     Clearance { lift: triangle.lift(point.position, point.is_back), reach: steps[0] + steps[1] }

@@ -160,10 +160,7 @@ pub(super) fn places<'a>(
 fn smooth_places(scene: &Scene, pair: &QuadPair, lit: &LitLanes) -> Vectors {
     let is_back = lit.is_back.to_bitmask();
     let mut places = lit.position;
-    let triangles = pair.planes.map(|planes| {
-        let [mesh, triangle] = planes.triangle.map(|i| i as usize);
-        SmoothTriangle::new(&scene.meshes[mesh], triangle)
-    });
+    let triangles = pair.planes.map(|planes| SmoothTriangle::new(scene, planes.triangle));
     for lane in pair.covered() {
         let lift = triangles[lane / 4].lift(of_lane(&lit.position, lane), is_back >> lane & 1 == 1);
         (0..3).for_each(|c| places[c].as_mut_array()[lane] += lift[c]);

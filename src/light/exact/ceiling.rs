@@ -92,25 +92,21 @@ impl Ceiling {
         let rise = (slopes[0].abs() + slopes[1].abs()) * size * (0.5 + ROUNDING);
         let [x, y] = self.across.map(|axis| axis.dot(*a));
         let at = |i: usize, axis: usize| (i as f32 + 0.5) * size + self.origin[axis];
-        let plane = |column: usize, row: usize| {
+        let most = |column: usize, row: usize| {
             let along = (at(column, 0) - x) * slopes[0] + (at(row, 1) - y) * slopes[1];
-            to_light.dot(*a) + along + rise
+            let plane = to_light.dot(*a) + along + rise;
+            // An edge-on triangle has none.
+            if plane < highest { plane } else { highest }
         };
         let ranges: [[f32; 2]; 2] = self.across.map(|axis| {
             let [a, b, c] = [a, b, c].map(|p| axis.dot(*p));
             [a.min(b).min(c), a.max(b).max(c)]
         });
         let Some([columns, rows]) = self.cells(&ranges) else { return };
-        let most = |column, row| {
-            let plane = plane(column, row);
-            // An edge-on triangle has none.
-            if plane < highest { plane } else { highest }
-        };
         for row in rows[0]..=rows[1] {
-            for column in columns[0]..=columns[1] {
-                let most = most(column, row);
-                let cell = &mut self.levels[0][row * SIDE + column][class];
-                *cell = cell.max(most);
+            let cells = &mut self.levels[0][row * SIDE..][columns[0]..=columns[1]];
+            for (cell, column) in cells.iter_mut().zip(columns[0]..) {
+                cell[class] = cell[class].max(most(column, row));
             }
         }
     }
