@@ -1,6 +1,6 @@
 //! Light: the sweep of one direction over the street's texture, and colours baked from it.
 
-use basrelief::light::{TextureFrame, baked};
+use basrelief::light::{BakedLight, Part, TextureFrame};
 use basrelief::relief::LitParts;
 use basrelief::scene::{self, Light, Sky};
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -25,9 +25,10 @@ fn light(criterion: &mut Criterion) {
         ("sun", &[Light::sun(to_light, Vec3::ONE)], &dark),
         ("sky", &[], &Sky::Color(Vec3::ONE)),
     ] {
-        let beams = frame.beams(lights, sky);
         group.bench_function(format!("bake/1024_{name}"), |b| {
-            b.iter(|| baked(black_box(&street), [&beams, &[]], None));
+            b.iter(|| {
+                BakedLight::new(black_box(&street), &frame, (lights, sky), None).surface(Part::All)
+            });
         });
     }
     group.finish();

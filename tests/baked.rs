@@ -235,3 +235,24 @@ fn meshes_hide_the_truths_part_of_the_sky_from_flat_pieces() {
     assert!(without < 28.0, "the plate hides a part of the sky: {without} dB without it");
     assert!(found > 36.0, "{found} dB");
 }
+
+/// A wall that rises from one texel to the next, many pixels high, and a sun before it that is low enough
+/// for what stands opposite to shade its foot: the edge of that shadow runs along the wall.
+#[test]
+fn shadows_end_on_walls_of_one_texel() {
+    let height = |x: u32, y: u32| match (x, y) {
+        (_, 0..4) => 1.0,
+        (0..8, 9..12) => 0.75,
+        _ => 0.0,
+    };
+    let maps = SurfaceMaps {
+        albedo: Some(ColorImage::from_fn(16, 16, |_, _| [0.8; 3])),
+        height: Some(HeightImage::from_fn(16, 16, height)),
+        relief_depth: 0.25,
+        ..SurfaceMaps::default()
+    };
+    let scene = floor(maps, &[sun(Vec3::new(0.1, 0.7, 1.0), Vec3::ONE)], Vec3::splat(0.1));
+    let truth = draw(&scene, Filter::Truth(Rays { samples: 256 }));
+    let near = decibels(&draw(&scene, Filter::default()), &truth);
+    assert!(near > 40.0, "{near} dB");
+}

@@ -28,6 +28,11 @@ fn lit_parts(surface: &Surface, displacement: [f32; 2]) -> Vec<Vec<f32>> {
 /// Whether a ray of light comes down to the surface at a place in texels, centres at halves.
 fn is_lit(field: &HeightField, [u, v]: [f32; 2], displacement: [f32; 2]) -> bool {
     let depth = 1.0 - field.height_at(f64::from(u), f64::from(v)) as f32;
+    is_reached(field, [u, v], depth, displacement)
+}
+
+/// Whether a ray of light comes down to a depth, 0 to 1, at such a place.
+fn is_reached(field: &HeightField, [u, v]: [f32; 2], depth: f32, displacement: [f32; 2]) -> bool {
     let place = [u / field.texels_per_repeat[0], v / field.texels_per_repeat[1]];
     let base = [0, 1].map(|i| PixelLanes::splat(place[i] - depth * displacement[i]));
     let hit = march(field, &base, &displacement.map(PixelLanes::splat)).to_array()[0];
@@ -144,5 +149,41 @@ fn a_light_moved_by_turns_of_the_texture_lights_it_turned() {
                 assert!((part - b[x][y]).abs() < 2e-3, "{x} {y}: {part} {}", b[x][y]);
             }
         }
+    }
+}
+
+/// Above the edge of a shadow a ray of light comes down to the column of a texel, below it does not.
+#[test]
+fn edges_of_shadows_lie_where_rays_pass() {
+    for wrap in [Wrap::Repeat, Wrap::Mirror] {
+        let surface = stones(wrap);
+        let field = HeightField::new(&surface);
+        let [mut num_dark, mut num_wrong] = [0; 2];
+        for displacement in DISPLACEMENTS {
+            let lit = LitParts::new(surface.base(), displacement, surface.relief_depth());
+            let [width, height] = surface.base().size();
+            let (rows, columns) = if lit.is_turned { (width, height) } else { (height, width) };
+            for row in 0..rows {
+                let mut edges = Vec::new();
+                lit.edges(row, &mut RowScratch::default(), &mut edges);
+                let edges = edges.iter().flat_map(|[edges, _]| edges.to_array()).take(columns);
+                for (column, edge) in edges.enumerate() {
+                    let (x, y) = if lit.is_turned { (row, column) } else { (column, row) };
+                    // On lit texels the edge is shared with what lies behind them.
+                    if edge <= surface.base().height_at(x as i32, y as i32) + 0.02 {
+                        continue;
+                    }
+                    let place = [x, y].map(|c| c as f32 + 0.5);
+                    let passes = |height| is_reached(&field, place, 1.0 - height, displacement);
+                    num_dark += 1;
+                    num_wrong += u32::from(passes(edge - 0.04) || !passes(edge + 0.04));
+                }
+            }
+        }
+        // The sweep knows heights where light crosses rows, rays all of the bilinear surface.
+        assert!(
+            num_dark > 2000 && num_wrong * 25 < num_dark,
+            "{wrap:?}: {num_wrong} of {num_dark}"
+        );
     }
 }

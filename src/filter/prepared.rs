@@ -2,7 +2,7 @@
 
 use super::far_field::FarField;
 use crate::footprint::Footprint;
-use crate::light::{Gloss, Horizons};
+use crate::light::{Gloss, Horizons, SunlitTexels};
 use crate::relief::{HeightCells, HeightField, LevelLoss, displacement, march};
 use crate::simd::PixelLanes;
 use crate::texture::Surface;
@@ -22,6 +22,8 @@ pub struct Prepared {
     is_lit: bool,
     /// The sun whose highlights are asked for, times its colours.
     gloss: Option<Gloss>,
+    /// How it is seen from near under each sun that it is lit by for good.
+    sunlit: Arc<[SunlitTexels]>,
 }
 
 /// Tables, if a surface has any, for so many MiB.
@@ -48,8 +50,8 @@ impl Prepared {
                 horizons: OnceLock::new(),
             })
         });
-        let (has_far_field, is_lit, gloss) = (true, false, None);
-        Self { surface, relief, far: Arc::default(), has_far_field, is_lit, gloss }
+        let (has_far_field, is_lit, gloss, sunlit) = (true, false, None, Arc::default());
+        Self { surface, relief, far: Arc::default(), has_far_field, is_lit, gloss, sunlit }
     }
 
     /// The same surface drawn flat.
@@ -60,6 +62,11 @@ impl Prepared {
     /// The same relief in the lit colours of another surface: what is made of heights is shared.
     pub(crate) fn recolored(&self, surface: Surface) -> Self {
         Self { surface: Arc::new(surface), far: Arc::default(), is_lit: true, ..self.clone() }
+    }
+
+    /// The same as it is seen from near under each sun.
+    pub(crate) fn seen_near(self, sunlit: Vec<SunlitTexels>) -> Self {
+        Self { sunlit: sunlit.into(), ..self }
     }
 
     /// The same relief with what it reflects of a sun's light for its colours, of which highlights are
@@ -102,8 +109,18 @@ impl Prepared {
         self.gloss.as_ref()
     }
 
+    /// How it is seen from near under each sun that it is lit by for good.
+    pub(super) fn sunlit(&self) -> &[SunlitTexels] {
+        &self.sunlit
+    }
+
     /// The texels.
     pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// The texels, to be kept.
+    pub(crate) fn shared_surface(&self) -> &Arc<Surface> {
         &self.surface
     }
 

@@ -5,7 +5,7 @@
 //! all that a table of the far field stands for. So the lobe is taken of each texel where it is
 //! swept, and what is averaged is highlights, not normals. It is the same with the sky.
 
-use super::bake::TextureFrame;
+use super::beams::TextureFrame;
 use super::openings::Openings;
 use super::reflection::{LEAST_COSINE, alpha};
 use super::sky_lobe::SkyLobe;

@@ -25,11 +25,12 @@ use crate::relief::{LitParts, MAX_SLOPE, RowScratch};
 use crate::texture::{Level, Rows, Surface};
 use rayon::prelude::*;
 
-/// Directions along the texture, evenly spaced as [diamond angles](crate::relief::directions).
-pub const NUM_AZIMUTHS: usize = 16;
+/// Directions along the texture, evenly spaced as [diamond angles](crate::relief::directions). Measured,
+/// a lit torus at 640x360: 16 of them 38.8 dB, 24 39.6, 32 39.9.
+pub const NUM_AZIMUTHS: usize = 32;
 
-/// Heights of light that horizons are found by.
-const NUM_HEIGHTS: usize = 64;
+/// Heights of light that horizons are found by; twice as many tell nothing more.
+const NUM_HEIGHTS: usize = 32;
 
 /// The plane of each texel's normal, x, y and z from -1 to 1, and `t0`.
 pub const NORMAL_PLANE: usize = NUM_AZIMUTHS / 4;

@@ -13,6 +13,7 @@
 //! than one it is: `a^2 + 2 (1 - |n|) / |n|` (Toksvig 2005, "Mipmapping normal maps").
 
 mod bake;
+mod beams;
 mod byte_levels;
 mod curved;
 mod disc;
@@ -25,11 +26,13 @@ pub mod reflection;
 mod sky_lobe;
 mod sky_shares;
 mod smooth;
+mod sunlit;
 mod surface_point;
+mod texel_light;
 mod vectors;
 
-pub(crate) use bake::lit_parts;
-pub use bake::{Beam, TextureFrame, baked};
+pub use bake::{BakedLight, Part};
+pub use beams::{Beam, TextureFrame};
 pub use curved::{Curved, CurvedSun, FrameLanes, LinearSky, Luster, Shine, Slant, Ways};
 pub use disc::{Disc, spiral};
 pub use gloss::{Gloss, rough_length};
@@ -42,6 +45,8 @@ pub use sky_lobe::SkyLobe;
 pub use sky_shares::SkyShares;
 pub use smooth::SmoothTriangle;
 pub(crate) use smooth::shares;
+pub use sunlit::{SunlitLanes, SunlitTexels};
 pub use surface_point::{SurfacePoint, unit_axes};
+pub(crate) use texel_light::lit_parts;
 pub(crate) use vectors::dot;
 pub use vectors::{Vectors, cross, repeat_length};

@@ -8,8 +8,9 @@
 //! that is `sin^2 t` times the axis, so `o` says both; on a plane it is the normal, and a place deep in a
 //! joint has a short one. Coarser levels have means.
 
-use super::bake::{TextureFrame, openings};
+use super::beams::TextureFrame;
 use super::byte_levels::ByteLevels;
+use super::texel_light::openings;
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, TexelLanes, u32x8};
 use crate::texture::{Rows, Surface};
 

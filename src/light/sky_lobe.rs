@@ -5,7 +5,7 @@
 //! the angle between the two, as wide as the lobe. How much of light it reflects depends on the angle of
 //! the eye to its normal.
 
-use super::bake::TextureFrame;
+use super::beams::TextureFrame;
 use super::curved::LinearSky;
 use super::disc::spiral;
 use super::openings::Openings;

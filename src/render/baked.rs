@@ -12,8 +12,8 @@ use super::open_sky::{Facing, OpenSky, Plane};
 use crate::filter::Prepared;
 use crate::light::exact::Occluders;
 use crate::light::reflection::Reflectance;
-use crate::light::{TextureFrame, baked};
-use crate::scene::{Finish, Light, Material, Mesh, Scene, Sky};
+use crate::light::{BakedLight, Part, SunlitTexels, TextureFrame};
+use crate::scene::{Finish, Material, Mesh, Scene};
 use glam::Vec3;
 
 /// Most texels of all baked surfaces of a scene together, some hundred MiB. Pieces beyond, in the
@@ -220,15 +220,19 @@ impl Piece {
         };
         let has_shares = material.maps.metallic.is_some() || material.maps.occlusion.is_some();
         let shares = has_shares.then_some(&shares as &(dyn Fn(_, _) -> _ + Sync));
-        let lit = |lights: &[Light], sky: &Sky| {
-            let (suns, sky) = (frame.beams(lights, &Sky::default()), frame.beams(&[], sky));
-            unlit.recolored(baked(unlit.surface(), [&suns, &sky], shares))
+        let (surface, lights) = (unlit.shared_surface(), (&*scene.lights, &scene.sky));
+        let light = BakedLight::new(surface, &frame, lights, shares);
+        let near = light.near();
+        let lit = |part: Part, near: Vec<SunlitTexels>| {
+            unlit.recolored(light.surface(part)).seen_near(near)
         };
         let (mut apart, mut open_sky) = (Vec::new(), None);
         if self.may_be_shaded(side, scene) {
-            apart.push(lit(&[], &scene.sky));
-            for light in scene.lights.iter().filter(|light| matches!(light, Light::Sun { .. })) {
-                apart.push(lit(std::slice::from_ref(light), &Sky::default()));
+            let sky = near.iter().flatten().next().map(SunlitTexels::of_sky);
+            apart.push(lit(Part::Sky, sky.into_iter().collect()));
+            for (sun, near) in near.iter().enumerate() {
+                let near = near.iter().map(SunlitTexels::of_sun).collect();
+                apart.push(lit(Part::Sun(sun), near));
             }
             open_sky = self.open_sky(side, (scene, occluders()), unlit);
         }
@@ -237,7 +241,10 @@ impl Piece {
         } else {
             gloss(&frame, material, (scene, reflectance), unlit)
         };
-        Side { normal, lit: lit(&scene.lights, &scene.sky), apart, open_sky, gloss }
+        // The sky is seen with the first sun.
+        let near = near.into_iter().flatten().enumerate();
+        let near = near.map(|(i, near)| if i == 0 { near } else { near.of_sun() }).collect();
+        Side { normal, lit: lit(Part::All, near), apart, open_sky, gloss }
     }
 
     /// What other meshes leave of the sky to that side.

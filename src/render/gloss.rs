@@ -4,7 +4,7 @@ use super::mapped::{mean_finish, own_roughness, reflecting, scatters};
 use crate::filter::Prepared;
 use crate::light::reflection::Reflectance;
 use crate::light::{Gloss, Openings, SkyLobe, TextureFrame, lit_parts};
-use crate::scene::{Light, Material, Scene, Sky};
+use crate::scene::{Light, Material, Scene};
 use std::sync::Arc;
 
 /// What it reflects of each sun, by its number, and of the sky.
@@ -18,7 +18,7 @@ pub(super) fn gloss(
     let (roughness, relief_depth) = (own_roughness(material), surface.relief_depth());
     let of_sun = |(i, light): (usize, &Light)| {
         let Light::Sun { to_light, .. } = *light else { return None };
-        let beams = frame.beams(std::slice::from_ref(light), &Sky::default());
+        let beams = frame.sun(light);
         let gloss = Gloss::of_sun(frame, to_light, roughness, relief_depth);
         let reflecting = || reflecting(material, unlit, lit_parts(surface, &beams));
         (!beams.is_empty()).then(|| (Some(i), unlit.glossy(reflecting(), gloss)))

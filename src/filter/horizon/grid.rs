@@ -7,13 +7,9 @@
 //!   bin 0   | mean | mean |         begins at the seen place `begin`
 //! ```
 
-use super::glossy::PatchGloss;
-use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
-use super::shine::PatchShine;
 use super::sweep_frame::SweepFrame;
 use crate::simd::LineLanes;
-use crate::texture::Rows;
 
 /// Most lines of a grid.
 pub(super) const MOST_LINES: usize = 64;
@@ -50,34 +46,6 @@ pub(super) struct Grid<'a> {
     pub(super) num_bins: usize,
     /// Whether lines are read half way between rows, too.
     pub(super) has_halves: bool,
-    /// What texels are multiplied with as they are swept.
-    pub(super) shown: Shown<'a>,
-}
-
-/// What texels are multiplied with as they are swept.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Shown<'a> {
-    /// Nothing.
-    Colors,
-    /// What shines on them, where a curved surface is lit.
-    Light(&'a PatchLight<'a>),
-    /// What they reflect of lights there.
-    Shine(&'a PatchShine<'a>),
-    /// What they reflect of a sun or of the sky.
-    Gloss(&'a PatchGloss<'a>),
-}
-
-impl<'a> Shown<'a> {
-    /// What is read of each texel beside its colour, if anything: what hides light from it, or what it
-    /// sees of the sky.
-    pub(super) fn rows(&self) -> Option<&'a Rows> {
-        match self {
-            Self::Colors => None,
-            Self::Light(light) => Some(light.rows),
-            Self::Shine(shine) => Some(shine.light.rows),
-            Self::Gloss(gloss) => gloss.openings,
-        }
-    }
 }
 
 /// What the lines of a grid see: the mean of each line in each bin. Channels are colour, then

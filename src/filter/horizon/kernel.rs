@@ -106,6 +106,11 @@ impl Totals {
         (3..CHANNELS).for_each(|i| self.normal[i - 3] += all[i] * share);
     }
 
+    /// Takes what was added for so many parts, which show their sum.
+    pub(super) fn are_parts(&mut self, num: usize) {
+        self.weight *= 1.0 / num as f32;
+    }
+
     /// The mean; `None` where no more was added than the rounding of [`integral`]'s differences
     /// makes.
     pub(super) fn mean(&self, is_lit: bool) -> Option<Texel> {

@@ -9,9 +9,10 @@
 //!        the run     `- offset of the first line; the others follow at equal distances
 //! ```
 
-use super::grid::{Grid, Shown};
+use super::grid::Grid;
+use super::show::Show;
 use super::sweep_frame::SweepFrame;
-use super::walk::Texels;
+use super::walk::Seen;
 use crate::relief::SEEN_DEPTH;
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, halves, i32x16, join, line_indices};
 use crate::texture::{FULL_F32, Rows, unpack_normals};
@@ -38,9 +39,8 @@ pub(super) struct Steps {
     offsets: [f32; SLOTS],
     /// Where the runs of texels start among the level's words; half way between rows there are two.
     starts: [[usize; SLOTS]; 2],
-    /// The same among the words of what else is read, where texels are lit; half way between rows by the
-    /// one before.
-    others: [usize; SLOTS],
+    /// The same among the words of what else is read, where texels are lit.
+    others: [[usize; SLOTS]; 2],
 }
 
 impl Steps {
@@ -54,13 +54,13 @@ impl Steps {
             scales: [0.0; SLOTS],
             offsets: [0.0; SLOTS],
             starts: [[0; SLOTS]; 2],
-            others: [0; SLOTS],
+            others: [[0; SLOTS]; 2],
         }
     }
 }
 
 /// A group of lines of a grid. `HALVES`: they are read half way between rows, too.
-pub(super) struct Lines<'a, const HALVES: bool, const LIT: bool> {
+pub(super) struct Lines<'a, const HALVES: bool> {
     grid: &'a Grid<'a>,
     frame: &'a SweepFrame<'a>,
     most_scale: f32,
@@ -111,7 +111,7 @@ impl SeenAt {
     }
 }
 
-impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
+impl<'a, const HALVES: bool> Lines<'a, HALVES> {
     /// Steps a row.
     pub(super) const STEPS: i32 = if HALVES { 2 } else { 1 };
 
@@ -145,11 +145,17 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
     /// Reads the heights of the next steps. Returns a bit for each in which a line sees what lies
     /// beyond its bound and all before; bit 0 is the step before them.
     #[inline(always)]
-    pub(super) fn read(&self, steps: &mut Steps, num: usize, mut bound: LineLanes) -> u32 {
+    pub(super) fn read(
+        &self,
+        steps: &mut Steps,
+        num: usize,
+        others: Option<&Rows>,
+        mut bound: LineLanes,
+    ) -> u32 {
         steps.places[0] = steps.places[steps.num];
         steps.before += steps.num as i32;
         steps.num = num;
-        self.find(steps);
+        self.find(steps, others);
         let mut seen = 0;
         for i in 1..=num {
             let place = self.seen.place(steps.q[i], self.heights(steps, i));
@@ -162,7 +168,7 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
 
     /// Finds where the lines cross the steps of a block.
     #[inline(always)]
-    fn find(&self, steps: &mut Steps) {
+    fn find(&self, steps: &mut Steps, others: Option<&Rows>) {
         let SweepFrame { origin, shear, spread, rows, .. } = *self.frame;
         for first in (0..=steps.num).step_by(16) {
             let numbers =
@@ -188,9 +194,9 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
             };
             for i in 0..Self::STEPS as usize {
                 steps.starts[i][first..first + 16].copy_from_slice(&starts(rows, i));
-            }
-            if let (true, Some(rows)) = (LIT, self.grid.shown.rows()) {
-                steps.others[first..first + 16].copy_from_slice(&starts(rows, 0));
+                if let Some(rows) = others {
+                    steps.others[i][first..first + 16].copy_from_slice(&starts(rows, i));
+                }
             }
         }
     }
@@ -212,71 +218,50 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
         if HALVES && near[i] != far[i] { (of_row(near) + of_row(far)) * 0.5 } else { of_row(near) }
     }
 
-    /// The texels of a step.
+    /// What the lines see in a step, as it is shown.
     #[inline(always)]
-    pub(super) fn texels<const CHANNELS: usize>(
+    pub(super) fn seen<S: Show<CHANNELS>, const CHANNELS: usize>(
         &self,
+        show: &S,
         steps: &Steps,
         i: usize,
-    ) -> Texels<CHANNELS> {
+    ) -> Seen<S::Values> {
         let between = self.between(steps, i);
-        let place = steps.places[i];
-        if LIT && matches!(self.grid.shown, Shown::Gloss(_) | Shown::Shine(_)) {
-            let mut values = [LineLanes::ZERO; CHANNELS];
-            values[..3].copy_from_slice(&self.highlights(steps, i, &between));
-            return Texels { values, place };
-        }
-        let (mut values, height) = self.step_values(steps, i, &between);
-        if let (true, Shown::Light(light)) = (LIT, self.grid.shown) {
-            let p = place * self.grid.step + self.grid.begin;
-            let at = [self.others + self.xi, p, height];
-            let shown = light.at(steps.others[i], &between, at, steps.q[i]);
-            (0..3).for_each(|c| values[c] *= shown[c]);
-        }
-        Texels { values, place }
+        Seen { values: show.read(&Step { lines: self, steps, i, between }), place: steps.places[i] }
     }
+}
 
-    /// What the texels of a step reflect, where that is shown.
-    #[inline(never)]
-    fn highlights(&self, steps: &Steps, i: usize, between: &Between) -> [LineLanes; 3] {
-        let ([r, g, b, x, y, z], height) = self.step_values(steps, i, between);
-        let texels = [[r, g, b], [x, y, z]];
-        let read = (steps.others[i], between);
-        let (xi, p) = (self.others + self.xi, steps.places[i] * self.grid.step + self.grid.begin);
-        match self.grid.shown {
-            Shown::Gloss(gloss) => gloss.at(texels, [xi, p], read),
-            Shown::Shine(shine) => shine.at(read, texels, [xi, p, height], steps.q[i]),
-            Shown::Colors | Shown::Light(_) => [LineLanes::ZERO; 3],
-        }
-    }
+/// A step where a group of lines crosses it.
+pub(super) struct Step<'a, const HALVES: bool> {
+    lines: &'a Lines<'a, HALVES>,
+    steps: &'a Steps,
+    i: usize,
+    /// Where the lines lie in the run of texels.
+    pub(super) between: Between,
+}
 
-    /// [`Self::values`] of a step: of its row, or of both rows beside it.
+impl<const HALVES: bool> Step<'_, HALVES> {
+    /// Colours, and normals where there are channels for them, and heights: colours and heights in
+    /// units of 1 / [`BETWEEN_SCALE`]. Half way between rows they are means of both.
     #[inline(always)]
-    fn step_values<const CHANNELS: usize>(
-        &self,
-        steps: &Steps,
-        i: usize,
-        between: &Between,
-    ) -> ([LineLanes; CHANNELS], LineLanes) {
-        let [near, far] = &steps.starts;
-        let (mut values, mut height) = self.values::<CHANNELS>(near[i], between);
-        if HALVES && near[i] != far[i] {
-            let (others, far_height) = self.values::<CHANNELS>(far[i], between);
+    pub(super) fn values<const CHANNELS: usize>(&self) -> ([LineLanes; CHANNELS], LineLanes) {
+        let ([near, _], far) = self.starts();
+        let (mut values, mut height) = self.values_at::<CHANNELS>(near);
+        if let Some([far, _]) = far {
+            let (others, far_height) = self.values_at::<CHANNELS>(far);
             (0..CHANNELS).for_each(|i| values[i] = (values[i] + others[i]) * 0.5);
             height = (height + far_height) * 0.5;
         }
         (values, height)
     }
 
-    /// The values where lines cross a row, and their heights: colours and heights in units of
-    /// 1 / [`BETWEEN_SCALE`].
+    /// The same of a row that starts at a word.
     #[inline(always)]
-    fn values<const CHANNELS: usize>(
+    pub(super) fn values_at<const CHANNELS: usize>(
         &self,
         start: usize,
-        between: &Between,
     ) -> ([LineLanes; CHANNELS], LineLanes) {
-        let rows = self.frame.rows;
+        let (rows, between) = (self.lines.frame.rows, &self.between);
         let (words, stride) = (rows.words(), rows.stride());
         let mut values = [LineLanes::ZERO; CHANNELS];
         let [red, green] = between.halves_at(words, start);
@@ -292,5 +277,34 @@ impl<'a, const HALVES: bool, const LIT: bool> Lines<'a, HALVES, LIT> {
             values[CHANNELS - 1] = LineLanes::ONE;
         }
         (values, height)
+    }
+
+    /// Where the runs of texels start among the words of its row, and among what else is read of
+    /// it; and the same of the row behind, if it lies half way between rows.
+    #[inline(always)]
+    pub(super) fn starts(&self) -> ([usize; 2], Option<[usize; 2]>) {
+        let Steps { starts, others, .. } = self.steps;
+        let [near, far] = [0, 1].map(|row| [starts[row][self.i], others[row][self.i]]);
+        (near, (HALVES && near[0] != far[0]).then_some(far))
+    }
+
+    /// Where the run starts among the words of what else is read; half way between rows of the one
+    /// before.
+    #[inline(always)]
+    pub(super) fn other(&self) -> usize {
+        self.steps.others[0][self.i]
+    }
+
+    /// The lines, and where the texels are seen on them, in rows from the middle.
+    #[inline(always)]
+    pub(super) fn seen_at(&self) -> [LineLanes; 2] {
+        let Lines { grid, others, xi, .. } = self.lines;
+        [*others + *xi, self.steps.places[self.i] * grid.step + grid.begin]
+    }
+
+    /// Its distance from the middle, in rows.
+    #[inline(always)]
+    pub(super) fn q(&self) -> f32 {
+        self.steps.q[self.i]
     }
 }

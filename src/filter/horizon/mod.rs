@@ -35,6 +35,8 @@ mod pixels;
 mod place;
 mod plan;
 mod shine;
+mod show;
+mod sunlit;
 mod sweep;
 mod sweep_frame;
 mod walk;
@@ -249,6 +251,7 @@ fn patches<'a>(
         light: None,
         bows: &[],
         gloss: prepared.gloss(),
+        sunlit: prepared.sunlit(),
         pixels,
         base,
         horizon,

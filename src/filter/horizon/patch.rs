@@ -6,17 +6,19 @@
 
 use super::bow::mean_bow;
 use super::glossy::PatchGloss;
-use super::grid::{Profile, Shown};
+use super::grid::Profile;
 use super::kernel::Totals;
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::plan::{Extent, Plan, WIDEST, in_whole_groups};
 use super::shine::PatchShine;
+use super::show::{Interpolated, Texels};
+use super::sunlit::PatchSun;
 use super::sweep_frame::{SweepFrame, means};
 use crate::filter::points;
 use crate::footprint::levels::{SweepExtent, for_sweep};
 use crate::footprint::{Ellipses, Footprints};
-use crate::light::{Curved, Gloss, Horizons, LocalLights};
+use crate::light::{Curved, Gloss, Horizons, LocalLights, SunlitTexels};
 use crate::relief::LevelLoss;
 use crate::settings::Horizon;
 use crate::simd::{BETWEEN_SCALE, PixelLanes, bits_mask};
@@ -96,6 +98,8 @@ pub(super) struct Patches<'a> {
     pub(super) light: Option<(&'a Curved<'a>, &'a Horizons)>,
     /// What is reflected, where that is asked for.
     pub(super) gloss: Option<&'a Gloss>,
+    /// How texels are seen from near under each sun that they are lit by for good.
+    pub(super) sunlit: &'a [SunlitTexels],
     /// The pixels, eight a vector.
     pub(super) pixels: &'a [Footprints],
     /// How their displacements bow; empty where none does.
@@ -233,11 +237,12 @@ impl<'a> Patches<'a> {
         let PatchScratch { unlit, lit, pixels, totals, .. } = scratch;
         totals.clear();
         totals.resize(picks.len(), Totals::default());
+        let is_turned = plan.frame.is_turned;
         let num_rows = if self.is_lit {
-            plan.run::<6, false>(lit, pixels, (lights, Shown::Colors), totals)
+            plan.run::<6>(&Interpolated(Texels), lit, (pixels, lights), totals)
         } else if let Some((curved, horizons)) = self.light {
-            let rows = horizons.rows(plan.level, plan.frame.is_turned);
-            let light = PatchLight::new(curved, rows, picks, pixels);
+            let light =
+                PatchLight::new(curved, horizons.rows(plan.level, is_turned), picks, pixels);
             if light.is_dark() {
                 found.fill(Texel::default());
                 return 0;
@@ -245,16 +250,24 @@ impl<'a> Patches<'a> {
             if let Some(shine) = &curved.shine {
                 let unit = (BETWEEN_SCALE, plan.level == 0);
                 let shine = PatchShine::new(&light, shine, (picks, pixels), unit);
-                plan.run::<3, true>(unlit, pixels, (&[], Shown::Shine(&shine)), totals)
+                plan.run(&Interpolated(&shine), unlit, (pixels, &[]), totals)
             } else {
-                plan.run::<3, true>(unlit, pixels, (&[], Shown::Light(&light)), totals)
+                plan.run(&Interpolated(&light), unlit, (pixels, &[]), totals)
             }
         } else if let Some(gloss) = self.gloss {
-            let rows = (plan.level, plan.frame.is_turned);
-            let gloss = PatchGloss::new(gloss, to_eyes, pixels, rows);
-            plan.run::<3, true>(unlit, pixels, (&[], Shown::Gloss(&gloss)), totals)
+            let gloss = PatchGloss::new(gloss, to_eyes, pixels, (plan.level, is_turned));
+            plan.run(&Interpolated(&gloss), unlit, (pixels, &[]), totals)
+        } else if plan.is_near() && !self.sunlit.is_empty() {
+            let mut num_rows = 0;
+            for sunlit in self.sunlit {
+                let sun = PatchSun::new(sunlit, self.surface, is_turned);
+                let plan = plan.on(sunlit.surface().base());
+                num_rows += plan.run(&sun, unlit, (pixels, &[]), totals);
+            }
+            totals.iter_mut().for_each(|totals| totals.are_parts(self.sunlit.len()));
+            num_rows
         } else {
-            plan.run::<3, false>(unlit, pixels, (&[], Shown::Colors), totals)
+            plan.run(&Interpolated(Texels), unlit, (pixels, &[]), totals)
         };
         for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
             // Where no line meets the ellipse, the texels around the base place stand for it.

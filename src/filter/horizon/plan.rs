@@ -1,10 +1,12 @@
 //! A planned patch: where its ellipses lie, how its lines are set, and the sweep over them.
 
-use super::grid::{GROUP, Grid, MOST_LINES, Profile, Shown};
+use super::grid::{GROUP, Grid, MOST_LINES, Profile};
 use super::kernel::Totals;
 use super::pixels::PixelOnLines;
+use super::show::Show;
 use super::sweep_frame::SweepFrame;
 use crate::light::LocalLights;
+use crate::texture::Level;
 
 /// Where texels are about as large as pixels, and lines lean by at least so much, they are read half
 /// way between rows, too: a bilinear surface has a kink wherever a line crosses a column, and bends
@@ -13,6 +15,10 @@ const LEAST_SHEAR: f32 = 0.15;
 
 /// Greatest half width, in texels, of an ellipse that shows such kinks.
 const KINK_WIDTH: f32 = 4.0;
+
+/// The same of one that shows what lies between texels under a sun. Measured on the floor, suns 30 and
+/// 10 degrees high: all of the base level is 0.1 to 0.8 dB better still, in twice the time.
+const NEAR_WIDTH: f32 = 4.0;
 
 /// Greatest distance between lines in texels: sixteen lines and their neighbours lie within 32
 /// texels, two loads.
@@ -83,12 +89,24 @@ impl Extent {
 }
 
 impl Plan<'_> {
+    /// Whether it is seen what lies between texels.
+    pub(super) fn is_near(&self) -> bool {
+        self.level == 0 && self.extent.half_width < NEAR_WIDTH
+    }
+
+    /// The same on the texels of another level with the same heights.
+    pub(super) fn on<'b>(&'b self, level: &'b Level) -> Plan<'b> {
+        let mut frame: SweepFrame<'b> = self.frame.clone();
+        frame.rows = level.rows(frame.is_turned);
+        Plan { frame, ..*self }
+    }
+
     /// Sweeps all lines and adds what they see to the pixels. Returns the number of rows.
-    pub(super) fn run<const CHANNELS: usize, const LIT: bool>(
+    pub(super) fn run<const CHANNELS: usize>(
         &self,
+        show: &impl Show<CHANNELS>,
         profile: &mut Profile<CHANNELS>,
-        pixels: &[PixelOnLines],
-        (lights, shown): (&[LocalLights], Shown),
+        (pixels, lights): (&[PixelOnLines], &[LocalLights]),
         totals: &mut [Totals],
     ) -> u64 {
         let Extent { xi, q, .. } = self.extent;
@@ -115,11 +133,10 @@ impl Plan<'_> {
                 inverse_step: 1.0 / self.step,
                 num_bins,
                 has_halves,
-                shown,
             };
             for (group, range) in grid.ranges(pixels).into_iter().enumerate() {
                 if range[0] < range[1] {
-                    num_rows += profile.sweep::<LIT>(&grid, group, range);
+                    num_rows += profile.sweep(show, &grid, group, range);
                 }
             }
             // A pixel's lines may lie on several grids: the totals go on, in this order everywhere.

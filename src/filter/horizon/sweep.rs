@@ -13,8 +13,9 @@
 
 use super::grid::{EMPTY_ROW, GROUP, Grid, Profile};
 use super::lines::{Lines, MOST_STEPS, Steps};
-use super::walk::{Texels, Walk};
-use crate::simd::set_bits;
+use super::show::Show;
+use super::walk::{Seen, Walk};
+use crate::simd::{LineLanes, set_bits};
 
 /// Steps of a block where any may be the last: short ones waste less.
 const FEW_STEPS: usize = 8;
@@ -22,22 +23,24 @@ const FEW_STEPS: usize = 8;
 impl<const CHANNELS: usize> Profile<CHANNELS> {
     /// Sweeps the lines of a group over the bins between two seen places. Returns the number of
     /// steps.
-    pub(super) fn sweep<const LIT: bool>(
+    pub(super) fn sweep(
         &mut self,
+        show: &impl Show<CHANNELS>,
         grid: &Grid,
         group: usize,
         range: [f32; 2],
     ) -> u64 {
         if grid.has_halves {
-            self.sweep_by::<true, LIT>(grid, group, range)
+            self.sweep_by::<_, true>(show, grid, group, range)
         } else {
-            self.sweep_by::<false, LIT>(grid, group, range)
+            self.sweep_by::<_, false>(show, grid, group, range)
         }
     }
 
     #[inline(never)]
-    fn sweep_by<const HALVES: bool, const LIT: bool>(
+    fn sweep_by<S: Show<CHANNELS>, const HALVES: bool>(
         &mut self,
+        show: &S,
         grid: &Grid,
         group: usize,
         [entry, exit]: [f32; 2],
@@ -50,32 +53,32 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let first_bin = bin_at(entry).max(0.0) as usize;
         let end_bin = (bin_at(exit).ceil() as usize).clamp(first_bin + 1, grid.num_bins);
         let [start, end] = [first_bin, end_bin].map(|bin| grid.begin + bin as f32 * grid.step);
-        let lines = Lines::<HALVES, LIT>::new(grid, group * GROUP);
+        let lines = Lines::<HALVES>::new(grid, group * GROUP);
         let mut walk = Walk::<CHANNELS>::new(grid.num_lines, group * GROUP, [first_bin, end_bin]);
         let (first, most) = lines.steps_between(start, end);
         let mut steps = Steps::new(first);
-        lines.read(&mut steps, 1, walk.bound());
+        lines.read(&mut steps, 1, show.others(), walk.bound());
         let mut num_read = 1;
         // A texel is never seen beyond its own row, so what lies before the exit cannot reach it:
         // these steps are read in long blocks.
-        let num_before = ((end - start) as i32 * Lines::<HALVES, LIT>::STEPS) as usize;
+        let num_before = ((end - start) as i32 * Lines::<HALVES>::STEPS) as usize;
         while !walk.is_done() && num_read < most {
             let num = num_before.saturating_sub(num_read).clamp(FEW_STEPS, MOST_STEPS);
-            let seen = lines.read(&mut steps, num, walk.bound());
-            let mut last = Texels::default();
+            let seen = lines.read(&mut steps, num, show.others(), walk.bound());
+            let mut last = Seen { values: S::NONE, place: LineLanes::ZERO };
             // A segment that is seen asks for the colours of both its ends.
             for i in set_bits(seen | seen >> 1) {
-                let next = lines.texels(&steps, i);
+                let next = lines.seen(show, &steps, i);
                 last.place = steps.places[i.saturating_sub(1)];
-                walk.pass(last, next, &mut self.bins);
+                walk.pass(show, [last, next], &mut self.bins);
                 last = next;
             }
             num_read += num;
         }
         if !walk.is_done() {
             // The deepest relief is seen behind all bins, unless rounding left some of them open.
-            let last = lines.texels(&steps, steps.num);
-            walk.pass(last, last.moved_to(walk.end), &mut self.bins);
+            let last = lines.seen(show, &steps, steps.num);
+            walk.pass(show, [last, last.moved_to(walk.end)], &mut self.bins);
         }
         num_read as u64
     }

@@ -17,27 +17,22 @@
 //! ```
 
 use super::grid::{GROUP, Row};
+use super::show::Show;
 use crate::simd::{LineLanes, set_bits};
 
 /// Least length of a segment, in bins, that a place in it is divided by: a shorter one shows one
 /// colour.
 const LEAST_SEGMENT: f32 = 1e-6;
 
-/// Texels of a group of lines, one of each.
+/// What a group of lines reads in a step.
 #[derive(Clone, Copy)]
-pub(super) struct Texels<const CHANNELS: usize> {
-    pub(super) values: [LineLanes; CHANNELS],
+pub(super) struct Seen<V> {
+    pub(super) values: V,
     /// Where they are seen, in bins from the grid's first.
     pub(super) place: LineLanes,
 }
 
-impl<const CHANNELS: usize> Default for Texels<CHANNELS> {
-    fn default() -> Self {
-        Self { values: [LineLanes::ZERO; CHANNELS], place: LineLanes::ZERO }
-    }
-}
-
-impl<const CHANNELS: usize> Texels<CHANNELS> {
+impl<V> Seen<V> {
     /// The same, seen at another place if that is farther.
     pub(super) fn moved_to(self, place: LineLanes) -> Self {
         Self { place: self.place.fast_max(place), ..self }
@@ -56,53 +51,46 @@ pub(super) struct Walk<const CHANNELS: usize> {
     pub(super) end: LineLanes,
 }
 
-/// The segment between two steps, whose colours are linear between its ends.
+/// The segment between two steps.
 #[derive(Clone, Copy)]
-struct Segment<const CHANNELS: usize> {
-    last: Texels<CHANNELS>,
-    next: Texels<CHANNELS>,
+struct Segment<V> {
+    last: Seen<V>,
+    next: Seen<V>,
     /// Half of 1 over the length.
     half_inverse: LineLanes,
 }
 
-impl<const CHANNELS: usize> Segment<CHANNELS> {
+impl<V: Copy> Segment<V> {
     #[inline(always)]
-    fn new(last: Texels<CHANNELS>, next: Texels<CHANNELS>) -> Self {
+    fn new(last: Seen<V>, next: Seen<V>) -> Self {
         let length = (next.place - last.place).fast_max(LineLanes::splat(LEAST_SEGMENT));
         Self { last, next, half_inverse: LineLanes::HALF / length }
     }
 
-    /// Sums and the colour times the length between two places.
+    /// Sums and what is shown times the length between two places.
     #[inline(always)]
-    fn added_to(
+    fn added_to<const CHANNELS: usize>(
         &self,
+        show: &impl Show<CHANNELS, Values = V>,
         sums: [LineLanes; CHANNELS],
-        from: LineLanes,
-        to: LineLanes,
+        [from, to]: [LineLanes; 2],
     ) -> [LineLanes; CHANNELS] {
         let Self { last, next, half_inverse } = self;
         // Where the middle lies between the last texel (0) and the next one (1).
         let middle = ((from - last.place) + (to - last.place)) * *half_inverse;
-        let length = to - from;
-        let of_next = length * middle;
-        let of_last = length - of_next;
-        let mut all = sums;
-        (0..CHANNELS).for_each(|i| {
-            all[i] = all[i] + next.values[i] * of_next + last.values[i] * of_last;
-        });
-        all
+        show.added_to(sums, [&last.values, &next.values], middle, to - from)
     }
 
-    /// The colours at places.
+    /// What is shown at places.
     #[inline(always)]
-    fn at(&self, place: LineLanes) -> [LineLanes; CHANNELS] {
+    fn at<const CHANNELS: usize>(
+        &self,
+        show: &impl Show<CHANNELS, Values = V>,
+        place: LineLanes,
+    ) -> [LineLanes; CHANNELS] {
         let Self { last, next, half_inverse } = self;
         let part = (place - last.place) * (*half_inverse + *half_inverse);
-        let mut all = last.values;
-        (0..CHANNELS).for_each(|i| {
-            all[i] = last.values[i] + (next.values[i] - last.values[i]) * part;
-        });
-        all
+        show.between([&last.values, &next.values], part)
     }
 }
 
@@ -135,10 +123,10 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
 
     /// Adds what is seen beyond the record of the segment between two steps.
     #[inline(always)]
-    pub(super) fn pass(
+    pub(super) fn pass<S: Show<CHANNELS>>(
         &mut self,
-        last: Texels<CHANNELS>,
-        next: Texels<CHANNELS>,
+        show: &S,
+        [last, next]: [Seen<S::Values>; 2],
         bins: &mut [[Row; CHANNELS]],
     ) {
         let segment = Segment::new(last, next);
@@ -146,7 +134,7 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
         let record = self.record.fast_max(next.place).fast_min(self.end);
         // Add what is seen within the lines' own bins.
         let is_full = record.simd_ge(self.bin_end);
-        self.sums = segment.added_to(self.sums, self.record, record.fast_min(self.bin_end));
+        self.sums = segment.added_to(show, self.sums, [self.record, record.fast_min(self.bin_end)]);
         self.record = record;
         // One test of all lines spares the writing where none has filled its bin.
         let full = is_full.to_bitmask();
@@ -162,29 +150,29 @@ impl<const CHANNELS: usize> Walk<CHANNELS> {
             let long = bin.simd_gt(self.bin_end).to_bitmask() & full;
             if long != 0 {
                 // A copy, so that what is used at each step needs not be in memory.
-                fill((long, self.at), [self.bin_end, bin], segment, bins);
+                fill(show, (long, self.at), [self.bin_end, bin], segment, bins);
             }
             // Begin the sums of the bins that the records lie in now.
-            let rest = segment.added_to([LineLanes::ZERO; CHANNELS], bin, record);
+            let rest = segment.added_to(show, [LineLanes::ZERO; CHANNELS], [bin, record]);
             (0..CHANNELS).for_each(|i| self.sums[i] = is_full.select(rest[i], self.sums[i]));
             self.bin_end = bin + 1.0;
         }
     }
 }
 
-/// Writes bins of some lanes that lie wholly in a segment, which is linear: the colour at their
-/// middle is theirs.
+/// Writes bins of some lanes that lie wholly in a segment: the colour at their middle is theirs.
 #[inline(never)]
-fn fill<const CHANNELS: usize>(
+fn fill<const CHANNELS: usize, S: Show<CHANNELS>>(
+    show: &S,
     (lanes, at): (u32, usize),
     [from, to]: [LineLanes; 2],
-    segment: Segment<CHANNELS>,
+    segment: Segment<S::Values>,
     bins: &mut [[Row; CHANNELS]],
 ) {
     let mut number = from;
     let mut left = lanes;
     while left != 0 {
-        let colors = segment.at(number + 0.5).map(LineLanes::to_array);
+        let colors = segment.at(show, number + 0.5).map(LineLanes::to_array);
         let numbers = number.fast_trunc_int().to_array();
         for lane in set_bits(left) {
             let bin = &mut bins[numbers[lane] as usize];

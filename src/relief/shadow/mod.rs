@@ -21,6 +21,7 @@
 //! between it and its neighbours in the row ([`Share`]).
 
 mod crossed;
+mod edge;
 mod late;
 mod share;
 
@@ -29,6 +30,9 @@ use crate::texture::{Level, Rows};
 use crossed::Crossed;
 use late::Latest;
 use share::{STEEP, Share, flat, lit};
+
+/// Least way of light down to the deepest relief, in rows, that is divided by.
+const LEAST_DOWN: f32 = 1e-3;
 
 /// How much of each texel of a level light reaches, 0 to 1.
 ///
@@ -78,25 +82,60 @@ impl<'a> LitParts<'a> {
 
     /// The parts of a row of texels, into `to`, in whole vectors of eight.
     pub fn row(&self, y: usize, scratch: &mut RowScratch, to: &mut Vec<f32>) {
-        let RowScratch { lines, latest, padded } = scratch;
-        self.latest.row(y, lines, latest);
-        // Begin with the last column, for neighbours on both sides.
-        let num_vectors = self.rows.width().div_ceil(8);
-        padded.clear();
-        padded.push(latest[latest.len() - 1]);
-        padded.extend(latest.iter().cycle().take(8 * num_vectors + 1));
-        // The rows that lines through the texels of this one pass before and after it.
-        let [before, own, after] = [-1, 0, 1].map(|step| {
-            Crossed::new(self.rows, y as i32 + step * self.toward, step as f32 * self.shear)
-        });
+        let [before, own, after] = self.crossed(y);
+        let columns = self.latest_row(y, scratch);
         to.clear();
-        for x in (0..8 * num_vectors).step_by(8) {
-            let columns = [0, 1, 2].map(|i| lanes(&padded[x + i..]));
-            let x = x as i32;
+        for (columns, x) in columns.windows(10).step_by(8).zip((0..).step_by(8)) {
+            let columns = [0, 1, 2].map(|i| lanes(&columns[i..]));
             let heights = [-1, 0, 1].map(|step| own.height(x + step));
             let along = [before.height_between(x), after.height_between(x)];
             to.extend_from_slice(self.parts(columns, heights, along).as_array());
         }
+    }
+
+    /// Where the edges of shadows lie on a row of texels, in whole vectors of eight: the heights above
+    /// which light reaches them, and how wide the edges are at least; 1 is from the deepest relief to
+    /// the polygon.
+    pub fn edges(&self, y: usize, scratch: &mut RowScratch, to: &mut Vec<[TexelLanes; 2]>) {
+        let [before, own, after] = self.crossed(y);
+        let columns = self.latest_row(y, scratch);
+        let inverse = 1.0 / self.down.max(LEAST_DOWN);
+        to.clear();
+        to.extend(columns.windows(10).step_by(8).zip((0..).step_by(8)).map(|(columns, x)| {
+            let (latest, height) = (lanes(&columns[1..]), own.height(x));
+            let along = [before.height_between(x), after.height_between(x)];
+            let places = self.places(height, along);
+            let rise = (along[0] - height).abs() * self.deep[1];
+            let above = edge::above(latest, places, rise) * inverse;
+            let [left, right] = [own.height(x - 1), own.height(x + 1)];
+            [height - above, edge::least_width(height, [along[0], along[1], left, right])]
+        }));
+    }
+
+    /// The rows that lines through the texels of one pass before it, it, and the one after.
+    fn crossed(&self, y: usize) -> [Crossed<'a>; 3] {
+        [-1, 0, 1].map(|step| {
+            Crossed::new(self.rows, y as i32 + step * self.toward, step as f32 * self.shear)
+        })
+    }
+
+    /// What [`Latest`] says of a row, in whole vectors of eight, with a column more on both sides: it
+    /// begins with the last one.
+    fn latest_row<'b>(&self, y: usize, scratch: &'b mut RowScratch) -> &'b [f32] {
+        let RowScratch { lines, latest, padded } = scratch;
+        self.latest.row(y, lines, latest);
+        padded.clear();
+        padded.push(latest[latest.len() - 1]);
+        padded.extend(latest.iter().cycle().take(self.rows.width().div_ceil(8) * 8 + 1));
+        padded
+    }
+
+    /// Where light comes in that meets texels and the places before and after them on its lines, in
+    /// rows.
+    #[inline(always)]
+    fn places(&self, height: TexelLanes, along: [TexelLanes; 2]) -> [TexelLanes; 3] {
+        let place = |height: TexelLanes| (height - 1.0) * self.down;
+        [place(along[0]) - 1.0, place(height), place(along[1]) + 1.0]
     }
 
     /// The parts of eight texels, by what stands of their columns and those beside them: the latest
@@ -110,8 +149,7 @@ impl<'a> LitParts<'a> {
     ) -> TexelLanes {
         let place = |height: TexelLanes| (height - 1.0) * self.down;
         let [left, own, right] = [0, 1, 2].map(|i| place(heights[i]) - latest[i]);
-        let (before, here, after) =
-            (place(along[0]) - 1.0, place(heights[1]), place(along[1]) + 1.0);
+        let [before, here, after] = self.places(heights[1], along);
         let record = latest[1].fast_max(before);
         let far = lit(before, here, record);
         let near = lit(here, after, record.fast_max(here));

@@ -89,7 +89,7 @@ impl Share {
 
 /// From 0, flat, to 1, a wall.
 #[inline(always)]
-fn steepness(rise: TexelLanes) -> TexelLanes {
+pub(super) fn steepness(rise: TexelLanes) -> TexelLanes {
     let more = (rise - STEEP).fast_max(TexelLanes::ZERO) * (1.0 / HALF_A_WALL);
     let square = more * more;
     let fourth = square * square;

@@ -1,0 +1,143 @@
+//! What a sweep shows: what is read of the texels that lines see, and what the segments between two
+//! of them show for it.
+
+use super::glossy::PatchGloss;
+use super::lines::Step;
+use super::lit::PatchLight;
+use super::shine::PatchShine;
+use crate::simd::LineLanes;
+use crate::texture::Rows;
+
+/// What is shown, in channels: colour, then normal.
+pub(super) trait Show<const CHANNELS: usize> {
+    /// What is read of texels.
+    type Values: Copy;
+
+    /// Before anything is read.
+    const NONE: Self::Values;
+
+    /// What is read of texels beside their own words, if anything.
+    fn others(&self) -> Option<&Rows>;
+
+    /// Reads the texels of a step.
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> Self::Values;
+
+    /// Sums, and so much more of what is shown at a part of the way between two texels.
+    fn added_to(
+        &self,
+        sums: [LineLanes; CHANNELS],
+        texels: [&Self::Values; 2],
+        part: LineLanes,
+        length: LineLanes,
+    ) -> [LineLanes; CHANNELS];
+
+    /// What is shown at a part of the way between two texels.
+    fn between(&self, texels: [&Self::Values; 2], part: LineLanes) -> [LineLanes; CHANNELS];
+}
+
+/// What texels show by themselves.
+pub(super) trait ShowTexels<const CHANNELS: usize> {
+    /// See [`Show::others`].
+    fn others(&self) -> Option<&Rows>;
+
+    /// What the texels of a step show.
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> [LineLanes; CHANNELS];
+}
+
+/// Shows what texels show, and between them what lies between.
+pub(super) struct Interpolated<T>(pub(super) T);
+
+impl<const CHANNELS: usize, T: ShowTexels<CHANNELS>> Show<CHANNELS> for Interpolated<T> {
+    type Values = [LineLanes; CHANNELS];
+
+    const NONE: Self::Values = [LineLanes::ZERO; CHANNELS];
+
+    #[inline(always)]
+    fn others(&self) -> Option<&Rows> {
+        self.0.others()
+    }
+
+    #[inline(always)]
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> Self::Values {
+        self.0.read(step)
+    }
+
+    #[inline(always)]
+    fn added_to(
+        &self,
+        mut sums: [LineLanes; CHANNELS],
+        [last, next]: [&Self::Values; 2],
+        part: LineLanes,
+        length: LineLanes,
+    ) -> [LineLanes; CHANNELS] {
+        let of_next = length * part;
+        let of_last = length - of_next;
+        (0..CHANNELS).for_each(|i| sums[i] = sums[i] + next[i] * of_next + last[i] * of_last);
+        sums
+    }
+
+    #[inline(always)]
+    fn between(&self, [last, next]: [&Self::Values; 2], part: LineLanes) -> [LineLanes; CHANNELS] {
+        std::array::from_fn(|i| last[i] + (next[i] - last[i]) * part)
+    }
+}
+
+/// Colours, and normals where there are channels for them.
+pub(super) struct Texels;
+
+impl<const CHANNELS: usize> ShowTexels<CHANNELS> for Texels {
+    #[inline(always)]
+    fn others(&self) -> Option<&Rows> {
+        None
+    }
+
+    #[inline(always)]
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> [LineLanes; CHANNELS] {
+        step.values().0
+    }
+}
+
+/// What lights shine on a curved surface, times its colours.
+impl ShowTexels<3> for &PatchLight<'_> {
+    #[inline(always)]
+    fn others(&self) -> Option<&Rows> {
+        Some(self.rows)
+    }
+
+    #[inline(always)]
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> [LineLanes; 3] {
+        let (colors, height) = step.values::<3>();
+        let [xi, p] = step.seen_at();
+        let shown = self.at(step.other(), &step.between, [xi, p, height], step.q());
+        [0, 1, 2].map(|c| colors[c] * shown[c])
+    }
+}
+
+/// What a curved surface reflects of lights.
+impl ShowTexels<3> for &PatchShine<'_> {
+    #[inline(always)]
+    fn others(&self) -> Option<&Rows> {
+        Some(self.light.rows)
+    }
+
+    #[inline(never)]
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> [LineLanes; 3] {
+        let ([r, g, b, x, y, z], height) = step.values();
+        let [xi, p] = step.seen_at();
+        self.at((step.other(), &step.between), [[r, g, b], [x, y, z]], [xi, p, height], step.q())
+    }
+}
+
+/// What a flat piece of a surface reflects of a sun or of the sky.
+impl ShowTexels<3> for &PatchGloss<'_> {
+    #[inline(always)]
+    fn others(&self) -> Option<&Rows> {
+        self.openings
+    }
+
+    #[inline(never)]
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> [LineLanes; 3] {
+        let ([r, g, b, x, y, z], _) = step.values();
+        self.at([[r, g, b], [x, y, z]], step.seen_at(), (step.other(), &step.between))
+    }
+}
