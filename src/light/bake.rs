@@ -15,12 +15,11 @@
 //! suns and skies. Where texels are larger than pixels, edges of shadows run between them: see
 //! [`SunlitTexels`](super::SunlitTexels).
 
-use super::beams::{Beam, TextureFrame};
+use super::beams::TextureFrame;
 use super::sunlit::SunlitTexels;
-use super::texel_light::{ShadowEdges, TexelLight, intensity};
+use super::texel_light::{SunLight, TexelLight};
 use crate::scene::{Light, Sky};
 use crate::texture::{Normals, Surface};
-use glam::Vec3;
 use std::sync::Arc;
 
 /// The shares of suns' light and of the sky's that a texel shows, by its column and row.
@@ -34,16 +33,6 @@ pub struct BakedLight<'a> {
     sky: Option<TexelLight>,
     /// One for each of the scene's suns.
     suns: Vec<Option<SunLight>>,
-}
-
-/// The light of a sun.
-#[derive(Debug)]
-pub(super) struct SunLight {
-    light: TexelLight,
-    /// The mean direction of its beams, and all their light.
-    pub(super) to_sun: Vec3,
-    pub(super) intensity: Vec3,
-    pub(super) edges: ShadowEdges,
 }
 
 /// Which light.
@@ -108,19 +97,5 @@ impl<'a> BakedLight<'a> {
             add(sky, of_sky);
         }
         sum
-    }
-}
-
-impl SunLight {
-    /// Of a sun's beams, if there are any.
-    fn new(surface: &Surface, beams: &[Beam]) -> Option<Self> {
-        if beams.is_empty() {
-            return None;
-        }
-        let (edges, light) = ShadowEdges::new(surface, beams);
-        let share = 1.0 / intensity(beams);
-        let to_sun = beams.iter().map(|b| b.to_light * (b.intensity.element_sum() * share)).sum();
-        let intensity = beams.iter().map(|beam| beam.intensity).sum();
-        Some(Self { light, to_sun, intensity, edges })
     }
 }

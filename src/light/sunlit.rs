@@ -13,7 +13,7 @@
 //! reaches it and `w` the height over which its shadow fades (see `relief::shadow::edge`); `E` the
 //! light of the sky, and `s` the share that the texel shows of the sun's.
 
-use super::bake::SunLight;
+use super::texel_light::SunLight;
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, u32x16};
 use crate::texture::{FULL, Rows, Surface};
 use glam::Vec3;

@@ -15,6 +15,16 @@ pub(super) struct TexelLight([Sums; 2]);
 #[derive(Debug)]
 pub(super) struct ShadowEdges([Sums; 2]);
 
+/// The light of a sun.
+#[derive(Debug)]
+pub(super) struct SunLight {
+    pub(super) light: TexelLight,
+    /// The mean direction of its beams, and all their light.
+    pub(super) to_sun: Vec3,
+    pub(super) intensity: Vec3,
+    pub(super) edges: ShadowEdges,
+}
+
 impl TexelLight {
     /// Of a light's beams.
     pub(super) fn new(surface: &Surface, beams: &[Beam]) -> Self {
@@ -24,6 +34,20 @@ impl TexelLight {
     /// Linear RGB at a column and row.
     pub(super) fn at(&self, x: usize, y: usize) -> [f32; 3] {
         both(&self.0, x, y)
+    }
+}
+
+impl SunLight {
+    /// Of a sun's beams, if there are any.
+    pub(super) fn new(surface: &Surface, beams: &[Beam]) -> Option<Self> {
+        if beams.is_empty() {
+            return None;
+        }
+        let (edges, light) = ShadowEdges::new(surface, beams);
+        let share = 1.0 / intensity(beams);
+        let to_sun = beams.iter().map(|b| b.to_light * (b.intensity.element_sum() * share)).sum();
+        let intensity = beams.iter().map(|beam| beam.intensity).sum();
+        Some(Self { light, to_sun, intensity, edges })
     }
 }
 
@@ -53,7 +77,7 @@ impl ShadowEdges {
 }
 
 /// The light of all beams, all channels together.
-pub(super) fn intensity(beams: &[Beam]) -> f32 {
+fn intensity(beams: &[Beam]) -> f32 {
     beams.iter().fold(0.0, |sum, beam| sum + beam.intensity.element_sum())
 }
 

@@ -10,9 +10,7 @@
 //! ```
 
 use super::grid::Grid;
-use super::show::Show;
 use super::sweep_frame::SweepFrame;
-use super::walk::Seen;
 use crate::relief::SEEN_DEPTH;
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, halves, i32x16, join, line_indices};
 use crate::texture::{FULL_F32, Rows, unpack_normals};
@@ -218,16 +216,10 @@ impl<'a, const HALVES: bool> Lines<'a, HALVES> {
         if HALVES && near[i] != far[i] { (of_row(near) + of_row(far)) * 0.5 } else { of_row(near) }
     }
 
-    /// What the lines see in a step, as it is shown.
+    /// One of the steps that are read.
     #[inline(always)]
-    pub(super) fn seen<S: Show<CHANNELS>, const CHANNELS: usize>(
-        &self,
-        show: &S,
-        steps: &Steps,
-        i: usize,
-    ) -> Seen<S::Values> {
-        let between = self.between(steps, i);
-        Seen { values: show.read(&Step { lines: self, steps, i, between }), place: steps.places[i] }
+    pub(super) fn step<'s>(&'s self, steps: &'s Steps, i: usize) -> Step<'s, HALVES> {
+        Step { lines: self, steps, i, between: self.between(steps, i) }
     }
 }
 

@@ -54,6 +54,10 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let end_bin = (bin_at(exit).ceil() as usize).clamp(first_bin + 1, grid.num_bins);
         let [start, end] = [first_bin, end_bin].map(|bin| grid.begin + bin as f32 * grid.step);
         let lines = Lines::<HALVES>::new(grid, group * GROUP);
+        let read = |steps: &Steps, i: usize| Seen {
+            values: show.read(&lines.step(steps, i)),
+            place: steps.places[i],
+        };
         let mut walk = Walk::<CHANNELS>::new(grid.num_lines, group * GROUP, [first_bin, end_bin]);
         let (first, most) = lines.steps_between(start, end);
         let mut steps = Steps::new(first);
@@ -68,7 +72,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
             let mut last = Seen { values: S::NONE, place: LineLanes::ZERO };
             // A segment that is seen asks for the colours of both its ends.
             for i in set_bits(seen | seen >> 1) {
-                let next = lines.seen(show, &steps, i);
+                let next = read(&steps, i);
                 last.place = steps.places[i.saturating_sub(1)];
                 walk.pass(show, [last, next], &mut self.bins);
                 last = next;
@@ -77,7 +81,7 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         }
         if !walk.is_done() {
             // The deepest relief is seen behind all bins, unless rounding left some of them open.
-            let last = lines.seen(show, &steps, steps.num);
+            let last = read(&steps, steps.num);
             walk.pass(show, [last, last.moved_to(walk.end)], &mut self.bins);
         }
         num_read as u64
