@@ -110,6 +110,8 @@ impl Show<3> for PatchSun<'_> {
 
     #[inline(always)]
     fn between(&self, [last, next]: [&Sunlit; 2], part: LineLanes) -> [LineLanes; 3] {
+        // Lines that see nothing of a segment ask for places far beyond its ends.
+        let part = part.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
         let Sunlit { albedo, normal: [x, y, z], above, width, share, sky } = last.mix(next, part);
         let to_sun = self.texels.to_sun;
         let cosine = (x * to_sun.x + y * to_sun.y + z * to_sun.z).fast_max(LineLanes::ZERO);

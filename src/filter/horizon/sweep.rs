@@ -54,10 +54,6 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let end_bin = (bin_at(exit).ceil() as usize).clamp(first_bin + 1, grid.num_bins);
         let [start, end] = [first_bin, end_bin].map(|bin| grid.begin + bin as f32 * grid.step);
         let lines = Lines::<HALVES>::new(grid, group * GROUP);
-        let read = |steps: &Steps, i: usize| Seen {
-            values: show.read(&lines.step(steps, i)),
-            place: steps.places[i],
-        };
         let mut walk = Walk::<CHANNELS>::new(grid.num_lines, group * GROUP, [first_bin, end_bin]);
         let (first, most) = lines.steps_between(start, end);
         let mut steps = Steps::new(first);
@@ -68,11 +64,11 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         let num_before = ((end - start) as i32 * Lines::<HALVES>::STEPS) as usize;
         while !walk.is_done() && num_read < most {
             let num = num_before.saturating_sub(num_read).clamp(FEW_STEPS, MOST_STEPS);
-            let seen = lines.read(&mut steps, num, show.others(), walk.bound());
+            let is_seen = lines.read(&mut steps, num, show.others(), walk.bound());
             let mut last = Seen { values: S::NONE, place: LineLanes::ZERO };
             // A segment that is seen asks for the colours of both its ends.
-            for i in set_bits(seen | seen >> 1) {
-                let next = read(&steps, i);
+            for i in set_bits(is_seen | is_seen >> 1) {
+                let next = seen(show, &lines, &steps, i);
                 last.place = steps.places[i.saturating_sub(1)];
                 walk.pass(show, [last, next], &mut self.bins);
                 last = next;
@@ -81,9 +77,20 @@ impl<const CHANNELS: usize> Profile<CHANNELS> {
         }
         if !walk.is_done() {
             // The deepest relief is seen behind all bins, unless rounding left some of them open.
-            let last = read(&steps, steps.num);
+            let last = seen(show, &lines, &steps, steps.num);
             walk.pass(show, [last, last.moved_to(walk.end)], &mut self.bins);
         }
         num_read as u64
     }
+}
+
+/// What lines see in a step that is read.
+#[inline(always)]
+fn seen<const CHANNELS: usize, const HALVES: bool, S: Show<CHANNELS>>(
+    show: &S,
+    lines: &Lines<HALVES>,
+    steps: &Steps,
+    i: usize,
+) -> Seen<S::Values> {
+    Seen { values: show.read(&lines.step(steps, i)), place: steps.places[i] }
 }
