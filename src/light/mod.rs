@@ -7,7 +7,7 @@
 //! `R` is what the surface reflects of a sky of 1, `k` what is left of that for the diffuse layer of
 //! what is not metal, `r` the direction that a mirror reflects to the eye; F, D and V are those of
 //! [`reflection`]. Nothing is hidden from light there; [`exact`] is the truth, with rays. On flat pieces
-//! the relief hides light from itself: [`baked`], and on curved ones too: [`Horizons`].
+//! the relief hides light from itself: [`BakedLight`], and on curved ones too: [`Horizons`].
 //!
 //! Where a pixel holds many normals, `n` is their mean, and the lobe is widened by how much shorter
 //! than one it is: `a^2 + 2 (1 - |n|) / |n|` (Toksvig 2005, "Mipmapping normal maps").

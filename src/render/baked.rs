@@ -1,7 +1,7 @@
 //! The flat pieces of a scene, each with its surface lit for good.
 //!
 //! Under suns and a sky all of a flat piece is lit alike, whatever the camera does. So its light is
-//! baked into the colours of its surface once (see [`crate::light::baked`]), and frames draw that
+//! baked into the colours of its surface once (see [`crate::light::BakedLight`]), and frames draw that
 //! surface unlit. Pieces of one material that lie in the same directions, such as all triangles of
 //! a floor, share one. Curved meshes are lit place by place.
 
