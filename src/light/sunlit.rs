@@ -13,7 +13,7 @@
 //! reaches it and `w` the height over which its shadow fades (see `relief::shadow::edge`); `E` the
 //! light of the sky, and `s` the share that the texel shows of the sun's.
 
-use super::texel_light::SunLight;
+use super::texel_light::{ShadowEdges, SunLight};
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes, u32x16};
 use crate::texture::{FULL, Rows, Surface};
 use glam::Vec3;
@@ -47,7 +47,7 @@ pub struct SunlitLanes {
 }
 
 /// Where heights of edges begin as they are stored; they end at the polygon.
-const LOWEST: f32 = -1.0;
+const LOWEST: f32 = ShadowEdges::LOWEST;
 
 /// Least and greatest width of an edge; the greatest is the root's unit, too.
 const WIDTHS: [f32; 2] = [1.0 / 512.0, 1.0];

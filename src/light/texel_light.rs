@@ -53,7 +53,7 @@ impl SunLight {
 
 impl ShadowEdges {
     /// The lowest height of an edge that is told from lower ones.
-    const LOWEST: f32 = -1.0;
+    pub(super) const LOWEST: f32 = -1.0;
 
     /// Those of a sun's beams, and its light: both are found by the same sweeps.
     pub(super) fn new(surface: &Surface, beams: &[Beam]) -> (Self, TexelLight) {

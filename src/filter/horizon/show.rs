@@ -22,17 +22,21 @@ pub(super) trait Show<const CHANNELS: usize> {
     /// Reads the texels of a step.
     fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> Self::Values;
 
-    /// Sums, and so much more of what is shown at a part of the way between two texels.
+    /// What is shown at a part of the way between two texels.
+    fn between(&self, texels: [&Self::Values; 2], part: LineLanes) -> [LineLanes; CHANNELS];
+
+    /// Sums, and so much more of that.
+    #[inline(always)]
     fn added_to(
         &self,
         sums: [LineLanes; CHANNELS],
         texels: [&Self::Values; 2],
         part: LineLanes,
         length: LineLanes,
-    ) -> [LineLanes; CHANNELS];
-
-    /// What is shown at a part of the way between two texels.
-    fn between(&self, texels: [&Self::Values; 2], part: LineLanes) -> [LineLanes; CHANNELS];
+    ) -> [LineLanes; CHANNELS] {
+        let shown = self.between(texels, part);
+        std::array::from_fn(|i| sums[i] + shown[i] * length)
+    }
 }
 
 /// What texels show by themselves.

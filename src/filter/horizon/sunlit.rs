@@ -97,18 +97,6 @@ impl Show<3> for PatchSun<'_> {
     }
 
     #[inline(always)]
-    fn added_to(
-        &self,
-        sums: [LineLanes; 3],
-        texels: [&Sunlit; 2],
-        part: LineLanes,
-        length: LineLanes,
-    ) -> [LineLanes; 3] {
-        let shown = self.between(texels, part);
-        std::array::from_fn(|i| sums[i] + shown[i] * length)
-    }
-
-    #[inline(always)]
     fn between(&self, [last, next]: [&Sunlit; 2], part: LineLanes) -> [LineLanes; 3] {
         // Lines that see nothing of a segment ask for places far beyond its ends.
         let part = part.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
