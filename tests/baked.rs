@@ -174,6 +174,32 @@ fn highlights_are_the_truths() {
     }
 }
 
+/// What stones reflect does not get to their colour below, and at the skyline they reflect much of it: each as
+/// its own side is turned, not as all of them are in the mean.
+#[test]
+fn the_diffuse_layer_is_as_bright_as_the_truths() {
+    let sun = sun(Vec3::new(0.2, 0.6, 1.0), Vec3::ONE);
+    let mut scene = floor(cobbles(256, 6), &[sun], Vec3::ZERO);
+    (scene.materials[0].specular, scene.materials[0].roughness) = (1.0, 0.3);
+    let [frame, truth] = [Filter::default(), Filter::Truth(Rays { samples: 256 })]
+        .map(|filter| draw(&scene, filter));
+    let far = |frame: &Frame| seen(frame).take(6 * 64).flatten().sum::<f32>();
+    let share = far(&frame) / far(&truth);
+    assert!((0.98..1.02).contains(&share), "{share} of the truth's light at the skyline");
+    assert!(decibels(&frame, &truth) > 38.0, "{} dB", decibels(&frame, &truth));
+}
+
+/// Tables hold what light leaves between texels: in a low sun that is far less than texels say.
+#[test]
+fn a_low_sun_is_as_bright_as_the_truth_at_the_skyline() {
+    let scene = floor(cobbles(256, 6), &[sun(Vec3::new(-0.3, 0.12, -1.0), Vec3::ONE)], Vec3::ZERO);
+    let [frame, truth] = [Filter::default(), Filter::Truth(Rays { samples: 256 })]
+        .map(|filter| draw(&scene, filter));
+    let far = |frame: &Frame| seen(frame).take(4 * 64).flatten().sum::<f32>();
+    let share = far(&frame) / far(&truth);
+    assert!((0.98..1.02).contains(&share), "{share} of the truth's light at the skyline");
+}
+
 /// Metal shows what each stone's side reflects, and nothing where that is another stone.
 #[test]
 fn skies_are_reflected_as_the_truth_says() {

@@ -104,6 +104,11 @@ impl Prepared {
         self.is_lit
     }
 
+    /// Whether it shows more or less of its colours to each eye.
+    pub(crate) fn shows_eye(&self) -> bool {
+        self.gloss.is_some()
+    }
+
     /// The sun whose highlights it shows.
     pub(super) fn gloss(&self) -> Option<&Gloss> {
         self.gloss.as_ref()
@@ -161,7 +166,8 @@ impl Prepared {
         }
         // Made without the lock: whoever held it and waited for its tasks could be given one that
         // asks for it. Whoever is last is kept, and all are the same.
-        let made = FarField::new(&self.surface, self.gloss.clone(), mib).map(Arc::new);
+        let made = FarField::new(&self.surface, (self.gloss.clone(), self.sunlit.clone()), mib)
+            .map(Arc::new);
         *self.far.lock().unwrap_or_else(PoisonError::into_inner) = Some((mib, made.clone()));
         made
     }

@@ -61,9 +61,9 @@ impl<'a> BakedLight<'a> {
         Self { surface, shares, sky, suns }
     }
 
-    /// The surface in some of the light; it needs no normals any more.
-    pub fn surface(&self, part: Part) -> Surface {
-        self.surface.with_colors(Normals::Dropped, |x, y, albedo| {
+    /// The surface in some of the light.
+    pub(crate) fn surface(&self, part: Part, normals: Normals) -> Surface {
+        self.surface.with_colors(normals, |x, y, albedo| {
             let light = self.at(x, y, |of| part == Part::All || part == of);
             std::array::from_fn(|c| albedo[c] * light[c])
         })

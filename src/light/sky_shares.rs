@@ -59,14 +59,19 @@ impl SkyShares {
         let hidden = (one - part) * by_square * L::splat(TOWARD_OPEN);
         let [x, y, z] = [0, 1, 2].map(|i| reflected[i] + opening[i] * hidden);
         // And what it shows.
-        let m = one - n_v;
+        (self.at(n_v).map(|share| share * part), [x, y, z.at_least(0.0)])
+    }
+
+    /// `x` and `F90 y` at a cosine of the eye to the normal.
+    #[inline(always)]
+    pub(super) fn at<L: Lanes>(&self, n_v: L) -> [L; 2] {
+        let m = L::splat(1.0) - n_v;
         let m2 = m * m;
         let m5 = m2 * m2 * m;
-        let shares = self.0.map(|terms| {
+        self.0.map(|terms| {
             let [all, of_m, of_m2, of_m5] = terms.map(L::splat);
-            (all + of_m * m + of_m2 * m2 + of_m5 * m5).at_least(0.0) * part
-        });
-        (shares, [x, y, z.at_least(0.0)])
+            (all + of_m * m + of_m2 * m2 + of_m5 * m5).at_least(0.0)
+        })
     }
 }
 

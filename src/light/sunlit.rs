@@ -14,7 +14,8 @@
 //! light of the sky, and `s` the share that the texel shows of the sun's.
 
 use super::texel_light::{ShadowEdges, SunLight};
-use crate::simd::{BETWEEN_SCALE, Between, LineLanes, u32x16};
+use super::vectors::dot;
+use crate::simd::Lanes;
 use crate::texture::{FULL, Rows, Surface};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -35,16 +36,32 @@ pub struct SunlitTexels {
     pub brightest: f32,
 }
 
-/// What lights texels where lines cross a row.
+/// Places of a surface in the light of a sun and the sky, one of each.
 #[derive(Clone, Copy, Debug)]
-pub struct SunlitLanes {
-    /// `m` and `w`.
-    pub edge: [LineLanes; 2],
-    /// `s`.
-    pub share: LineLanes,
+pub struct Sunlit<L> {
+    /// Colours in any unit.
+    pub albedo: [L; 3],
+    /// Normals in the frame of the texture, of any length.
+    pub normal: [L; 3],
+    /// How high they lie above the middle of the shadow's edge, `h - m`, and how wide that is, `w`.
+    pub above: L,
+    pub width: L,
+    /// `s`, the part of the sun's light that they show.
+    pub share: L,
     /// `E`, 1 for the brightest.
-    pub sky: [LineLanes; 3],
+    pub sky: [L; 3],
 }
+
+/// A sun and a sky as places show them, in some unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Sunlight {
+    to_sun: Vec3,
+    intensity: [f32; 3],
+    brightest: f32,
+}
+
+/// Least length of a mean normal that is divided by.
+const LEAST_LENGTH: f32 = 1e-3;
 
 /// Where heights of edges begin as they are stored; they end at the polygon.
 const LOWEST: f32 = ShadowEdges::LOWEST;
@@ -103,6 +120,13 @@ impl SunlitTexels {
         Self { intensity: Vec3::ZERO, ..self.clone() }
     }
 
+    /// The light, for colours in units of a lit surface's.
+    pub fn light(&self, lit: &Surface) -> Sunlight {
+        let unit = self.surface.color_scale() / lit.color_scale();
+        let intensity = (self.intensity * unit).to_array();
+        Sunlight { to_sun: self.to_sun, intensity, brightest: self.brightest * unit }
+    }
+
     /// The surface before it was lit.
     pub fn surface(&self) -> &Surface {
         &self.surface
@@ -114,25 +138,63 @@ impl SunlitTexels {
     }
 }
 
-impl SunlitLanes {
-    /// Where lines cross a row of [`SunlitTexels`], whose run of texels begins at a word.
+impl<L: Lanes> Sunlit<L> {
+    /// Places of a surface with such colours, normals and heights, 0 to 1. `part` gives a number that is
+    /// stored for them in a plane of [`SunlitTexels::rows`], by its first bit and greatest value, as a part
+    /// of that.
     #[inline(always)]
-    pub(crate) fn new(rows: &Rows, start: usize, between: &Between) -> Self {
-        let [edges, colors] =
-            [0, 1].map(|plane| between.words_at(rows.words(), start + plane * rows.stride()));
-        let part = |words: [u32x16; 2], first: u32, most: u32| {
-            between.bits_of(words, first, most) * (1.0 / (most as f32 * BETWEEN_SCALE))
-        };
-        let root = part(edges, 16, WIDTH);
+    pub(crate) fn new(
+        [albedo, normal]: [[L; 3]; 2],
+        height: L,
+        part: impl Fn(usize, u32, u32) -> L,
+    ) -> Self {
+        let middle = part(0, 0, FULL) * L::splat(1.0 - LOWEST) + L::splat(LOWEST);
+        let root = part(0, 16, WIDTH);
         let mut first = 0;
         Self {
-            edge: [part(edges, 0, FULL) * (1.0 - LOWEST) + LOWEST, root * root],
-            share: part(edges, 24, SHARE),
+            albedo,
+            normal,
+            above: height - middle,
+            width: root * root,
+            share: part(0, 24, SHARE),
             sky: SKY.map(|bits| {
                 first += bits;
-                part(colors, first - bits, most(bits))
+                part(1, first - bits, most(bits))
             }),
         }
+    }
+
+    /// At a part of the way to others.
+    #[inline(always)]
+    pub(crate) fn mix(&self, next: &Self, part: L) -> Self {
+        let mix = |a: L, b: L| a + (b - a) * part;
+        Self {
+            albedo: std::array::from_fn(|i| mix(self.albedo[i], next.albedo[i])),
+            normal: std::array::from_fn(|i| mix(self.normal[i], next.normal[i])),
+            above: mix(self.above, next.above),
+            width: mix(self.width, next.width),
+            share: mix(self.share, next.share),
+            sky: std::array::from_fn(|i| mix(self.sky[i], next.sky[i])),
+        }
+    }
+
+    /// `V`, the part of the sun that is seen.
+    #[inline(always)]
+    pub(crate) fn sun_seen(&self) -> L {
+        (self.above / self.width + L::splat(0.5)).at_least(0.0).at_most(1.0)
+    }
+
+    /// What they show.
+    #[inline(always)]
+    pub(crate) fn shown(&self, light: &Sunlight) -> [L; 3] {
+        let to_sun = light.to_sun.to_array().map(L::splat);
+        let cosine = dot(&self.normal, &to_sun).at_least(0.0);
+        let length = dot(&self.normal, &self.normal).sqrt().at_least(LEAST_LENGTH);
+        let sun = cosine * self.sun_seen() * self.share / length;
+        std::array::from_fn(|i| {
+            let of_sky = self.sky[i] * L::splat(light.brightest);
+            self.albedo[i] * (of_sky + sun * L::splat(light.intensity[i]))
+        })
     }
 }
 

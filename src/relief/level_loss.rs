@@ -9,7 +9,7 @@
 //! where its own would lose too much.
 
 use super::directions::{Lengths, NUM_LENGTHS};
-use super::seen::{Seen, View, seen_image, square_difference};
+use super::seen::{Heights, View, seen_image, square_difference};
 use crate::texture::Surface;
 use rayon::prelude::*;
 use std::sync::OnceLock;
@@ -76,10 +76,10 @@ impl LevelLoss {
             plane: surface.mean_depth(),
         });
         // See the relief on the base level, which loses nothing.
-        let exact = views.map(|view| seen_image(surface, Seen::Heights, 0, size, view));
+        let exact = views.map(|view| seen_image(surface, &Heights, 0, size, view));
         let is_lost = |level: usize| {
             let squares = views.iter().zip(&exact).map(|(view, exact)| {
-                square_difference(exact, &seen_image(surface, Seen::Heights, level, size, *view))
+                square_difference(exact, &seen_image(surface, &Heights, level, size, *view))
             });
             (squares.sum::<f32>() / PROBES.len() as f32).sqrt() > MOST_LOSS[level - 1]
         };

@@ -21,19 +21,97 @@ const LEAST_SEGMENT: f32 = 1e-6;
 /// An image of what is seen, row by row along u.
 pub type SeenImage = Vec<[f32; 3]>;
 
-/// See [`Seen::Shining`].
-type Shown<'a> = &'a (dyn Fn([[TexelLanes; 3]; 2], u32x8) -> [TexelLanes; 3] + Sync);
+/// What is seen: what is read of texels, and what is shown between two of them.
+pub(crate) trait Sight: Sync {
+    /// What is read.
+    type Values: Copy;
 
-/// What is seen.
+    /// Reads the texels where lines cross a row.
+    fn read(&self, crossing: &Crossing) -> Self::Values;
+
+    /// What is shown at a part of the way between two rows, in units of the surface's stored colours.
+    fn between(&self, values: [&Self::Values; 2], part: TexelLanes) -> [TexelLanes; 3];
+}
+
+/// Linear colours.
+pub(crate) struct Colors;
+
+/// Heights, three times each.
+pub(crate) struct Heights;
+
+impl Sight for Colors {
+    type Values = [TexelLanes; 3];
+
+    fn read(&self, crossing: &Crossing) -> Self::Values {
+        crossing.colors()
+    }
+
+    #[inline(always)]
+    fn between(&self, [near, far]: [&Self::Values; 2], part: TexelLanes) -> [TexelLanes; 3] {
+        std::array::from_fn(|i| near[i] + (far[i] - near[i]) * part)
+    }
+}
+
+impl Sight for Heights {
+    type Values = TexelLanes;
+
+    fn read(&self, crossing: &Crossing) -> Self::Values {
+        crossing.height()
+    }
+
+    #[inline(always)]
+    fn between(&self, [near, far]: [&Self::Values; 2], part: TexelLanes) -> [TexelLanes; 3] {
+        [*near + (*far - *near) * part; 3]
+    }
+}
+
+/// Where eight lines, a texel apart, cross a row.
 #[derive(Clone, Copy)]
-pub(crate) enum Seen<'a> {
-    /// Linear colours, 0 to 1 of the surface's scale.
-    Colors,
-    /// What texels show, 0 or more, by their colours and normals and, where rows of the same size say more of
-    /// them, by the word of the nearest.
-    Shining(Shown<'a>, Option<&'a Rows>),
-    /// Heights, 0 to 1, three times each.
-    Heights,
+pub(crate) struct Crossing<'a> {
+    rows: &'a Rows,
+    /// Whether rows run along v.
+    pub(crate) is_turned: bool,
+    /// The row of the endless pattern, and the column of the first line's texel.
+    row: i32,
+    column: i32,
+    /// Where lines lie between their texels and the next ones.
+    part: f32,
+    /// Red and green, blue and height.
+    words: [u32x8; 2],
+}
+
+impl Crossing<'_> {
+    /// Linear colours, in stored units.
+    pub(crate) fn colors(&self) -> [TexelLanes; 3] {
+        let [red_green, blue_height] = self.words;
+        [low_half(red_green), high_half(red_green), low_half(blue_height)]
+    }
+
+    /// Heights, in stored units.
+    pub(crate) fn height(&self) -> TexelLanes {
+        high_half(self.words[1])
+    }
+
+    /// Normals, of any length.
+    pub(crate) fn normals(&self) -> [TexelLanes; 3] {
+        if !self.rows.has_normals() {
+            return [TexelLanes::ZERO, TexelLanes::ZERO, TexelLanes::ONE];
+        }
+        let [near, far] = self.both(self.rows, 2).map(unpack_normals);
+        std::array::from_fn(|i| self.mix(near[i], far[i]))
+    }
+
+    /// The words of the texels before and after each line in a plane of rows of the same size.
+    pub(crate) fn both(&self, rows: &Rows, plane: usize) -> [u32x8; 2] {
+        let words = rows.row(self.row);
+        let start = rows.run_start(self.column) + plane * rows.stride();
+        [Rows::run(words, start), Rows::run(words, start + 1)]
+    }
+
+    /// Between what texels before and after each line say.
+    pub(crate) fn mix(&self, near: TexelLanes, far: TexelLanes) -> TexelLanes {
+        near + (far - near) * self.part
+    }
 }
 
 /// How a surface is seen.
@@ -49,7 +127,7 @@ pub struct View {
 /// most the level's.
 pub(crate) fn seen_image(
     surface: &Surface,
-    seen: Seen<'_>,
+    sight: &impl Sight,
     level: usize,
     size: [usize; 2],
     view: View,
@@ -63,9 +141,9 @@ pub(crate) fn seen_image(
     let is_turned = du.abs() > dv.abs();
     let rows = source.rows(is_turned);
     let mut sweep = if is_turned {
-        Sweep::new((rows, seen), [dv, du], view.plane, [size[1], size[0]])
+        Sweep::new((rows, sight, true), [dv, du], view.plane, [size[1], size[0]])
     } else {
-        Sweep::new((rows, seen), [du, dv], view.plane, size)
+        Sweep::new((rows, sight, false), [du, dv], view.plane, size)
     };
     for first in (0..sweep.rows.width()).step_by(8) {
         sweep.lines(first);
@@ -89,7 +167,7 @@ pub fn seen_depth(
     // A mean over a whole repeat is the same on any plane.
     let plane = surface.mean_depth();
     let sum_of = |&displacement: &[f32; 2]| {
-        let image = seen_image(surface, Seen::Heights, level, size, View { displacement, plane });
+        let image = seen_image(surface, &Heights, level, size, View { displacement, plane });
         image.iter().map(|[height, ..]| f64::from(1.0 - height)).sum::<f64>() / image.len() as f64
     };
     let sum: f64 = displacements.iter().map(sum_of).sum();
@@ -104,9 +182,10 @@ pub fn square_difference(a: &[[f32; 3]], b: &[[f32; 3]]) -> f32 {
 }
 
 /// A sweep over one whole level: rows along y, lines as lanes.
-struct Sweep<'a> {
+struct Sweep<'a, S: Sight> {
     rows: &'a Rows,
-    seen: Seen<'a>,
+    sight: &'a S,
+    is_turned: bool,
     toward: f32,
     depth: f32,
     shear: f32,
@@ -118,16 +197,9 @@ struct Sweep<'a> {
     sums: Vec<[f32; 4]>,
 }
 
-/// The eight lines in one row.
-#[derive(Clone, Copy)]
-struct Row {
-    place: TexelLanes,
-    values: [TexelLanes; 3],
-}
-
-impl<'a> Sweep<'a> {
+impl<'a, S: Sight> Sweep<'a, S> {
     fn new(
-        (rows, seen): (&'a Rows, Seen<'a>),
+        (rows, sight, is_turned): (&'a Rows, &'a S, bool),
         [dx, dy]: [f32; 2],
         plane: f32,
         size: [usize; 2],
@@ -136,7 +208,7 @@ impl<'a> Sweep<'a> {
         let scale = [size[0] as f32 / rows.width() as f32, size[1] as f32 / rows.height() as f32];
         let toward = if dy < 0.0 { -1.0 } else { 1.0 };
         let sums = vec![[0.0; 4]; size[0] * size[1]];
-        Self { rows, seen, toward, depth: dy.abs(), shear, plane, size, scale, sums }
+        Self { rows, sight, is_turned, toward, depth: dy.abs(), shear, plane, size, scale, sums }
     }
 
     /// Walks eight lines over one period of the pattern, after a walk that finds what hides its
@@ -145,64 +217,49 @@ impl<'a> Sweep<'a> {
         let num_rows = self.rows.height() as i32;
         let lead = (self.depth.ceil() as i32 + 1).min(num_rows);
         let num_lines = (self.rows.width() - first).min(8);
-        let mut previous = self.row(first, -lead);
-        let mut horizon = previous.place;
+        let (mut near, mut near_place) = self.cross(first, -lead);
+        let mut horizon = near_place;
         // What is seen of one period: between the record at its beginning and the same a period on.
         let (begin, end) = (-self.depth * self.plane, num_rows as f32 - self.depth * self.plane);
         let last = num_rows + self.depth as i32 + 1;
+        // Most rows are hidden, and not read.
+        let mut read = None;
         for i in 1 - lead..=last {
-            let row = self.row(first, i);
+            let (row, place) = self.cross(first, i);
             // Lanes beyond the last line set no record.
-            let records = row.place.simd_gt(horizon).to_bitmask() & ((1 << num_lines) - 1);
-            if records != 0 {
+            let records = place.simd_gt(horizon).to_bitmask() & ((1 << num_lines) - 1);
+            let seen = (records != 0).then(|| self.sight.read(&row));
+            if let Some(seen) = &seen {
                 let from = horizon.fast_max(TexelLanes::splat(begin));
-                let to = row.place.fast_min(TexelLanes::splat(end));
-                self.add(first, [from, to], [&previous, &row], records);
-                horizon = horizon.fast_max(row.place);
+                let to = place.fast_min(TexelLanes::splat(end));
+                let before = read.unwrap_or_else(|| self.sight.read(&near));
+                self.add(first, [from, to], ([near_place, place], [&before, seen]), records);
+                horizon = horizon.fast_max(place);
                 // From the period's end on, all records are those of the next one.
                 if horizon.simd_ge(TexelLanes::splat(end)).all() {
                     return;
                 }
             }
-            previous = row;
+            (near, near_place, read) = (row, place, seen);
         }
     }
 
-    /// Projected places and values of the lines in the i-th row of the walk.
-    fn row(&self, first: usize, i: i32) -> Row {
+    /// The lines in the i-th row of the walk, and their projected places.
+    fn cross(&self, first: usize, i: i32) -> (Crossing<'a>, TexelLanes) {
         let eta = i as f32 * self.toward;
-        let words = self.rows.row(eta as i32);
         let x = first as f32 + self.shear * eta;
         let left = x.floor();
-        let start = self.rows.run_start(left as i32);
+        let (row, column) = (eta as i32, left as i32);
+        let (words, start) = (self.rows.row(row), self.rows.run_start(column));
         let blend = Blend::new(TexelLanes::splat(x - left));
-        let both = |plane: usize| {
+        let pick = |plane: usize| {
             let start = start + plane * self.rows.stride();
-            [Rows::run(words, start), Rows::run(words, start + 1)]
+            blend.mix([Rows::run(words, start), Rows::run(words, start + 1)])
         };
-        let pick = |plane: usize| blend.mix(both(plane));
-        let (red_green, blue_height) = (pick(0), pick(1));
-        let height = high_half(blue_height);
-        let depth = TexelLanes::ONE - height * (1.0 / FULL_F32);
-        let colors = || [low_half(red_green), high_half(red_green), low_half(blue_height)];
-        let values = match self.seen {
-            Seen::Colors => colors(),
-            Seen::Shining(shown, others) => {
-                let normal = if self.rows.has_normals() {
-                    let [near, far] = both(2).map(unpack_normals);
-                    [0, 1, 2].map(|i| near[i] + (far[i] - near[i]) * (x - left))
-                } else {
-                    [TexelLanes::ZERO, TexelLanes::ZERO, TexelLanes::ONE]
-                };
-                let nearest = i32::from(x - left >= 0.5);
-                let word = others.map_or(u32x8::ZERO, |rows| {
-                    Rows::run(rows.row(eta as i32), rows.run_start(left as i32 + nearest))
-                });
-                shown([colors(), normal], word)
-            }
-            Seen::Heights => [height; 3],
-        };
-        Row { place: TexelLanes::splat(i as f32) - depth * self.depth, values }
+        let (rows, is_turned, part) = (self.rows, self.is_turned, x - left);
+        let crossing = Crossing { rows, is_turned, row, column, part, words: [pick(0), pick(1)] };
+        let depth = TexelLanes::ONE - crossing.height() * (1.0 / FULL_F32);
+        (crossing, TexelLanes::splat(i as f32) - depth * self.depth)
     }
 
     /// Adds the parts from `from` to `to` of the segments between two rows, where there is a
@@ -211,11 +268,10 @@ impl<'a> Sweep<'a> {
         &mut self,
         first: usize,
         [from, to]: [TexelLanes; 2],
-        [near, far]: [&Row; 2],
+        ([near, far], values): ([TexelLanes; 2], [&S::Values; 2]),
         records: u32,
     ) {
-        let inverse =
-            TexelLanes::ONE / (far.place - near.place).fast_max(TexelLanes::splat(LEAST_SEGMENT));
+        let inverse = TexelLanes::ONE / (far - near).fast_max(TexelLanes::splat(LEAST_SEGMENT));
         let line = lane_columns(first as i32);
         // Most parts are short and fall into one texel; a long one is cut into parts shorter than a
         // texel.
@@ -228,11 +284,9 @@ impl<'a> Sweep<'a> {
         let length = (to - from) * (1.0 / num_parts as f32);
         for part in 0..num_parts {
             let middle = from + length * (part as f32 + 0.5);
-            let at = ((middle - near.place) * inverse)
-                .fast_max(TexelLanes::ZERO)
-                .fast_min(TexelLanes::ONE);
-            let value =
-                |i: usize| (near.values[i] + (far.values[i] - near.values[i]) * at) * length;
+            let at =
+                ((middle - near) * inverse).fast_max(TexelLanes::ZERO).fast_min(TexelLanes::ONE);
+            let [r, g, b] = self.sight.between(values, at).map(|value| value * length);
             let eta = (middle + self.depth * self.plane) * self.toward;
             // Texel centres lie at whole numbers.
             let x = ((line + eta * self.shear + 0.5) * self.scale[0])
@@ -240,7 +294,7 @@ impl<'a> Sweep<'a> {
                 .fast_trunc_int()
                 .to_array();
             let y = ((eta + 0.5) * self.scale[1]).floor().fast_trunc_int().to_array();
-            let sums = [value(0), value(1), value(2), length].map(TexelLanes::to_array);
+            let sums = [r, g, b, length].map(TexelLanes::to_array);
             // Add lane by lane: lines may fall into one texel, which lanes could not add to at
             // once.
             let mut left = records;

@@ -5,7 +5,7 @@
 //! surface unlit. Pieces of one material that lie in the same directions, such as all triangles of
 //! a floor, share one. Curved meshes are lit place by place.
 
-use super::gloss::gloss;
+use super::gloss::{PieceGloss, gloss, layer};
 use super::ground::LitPiece;
 use super::mapped::texel_finish;
 use super::open_sky::{Facing, OpenSky, Plane};
@@ -14,6 +14,7 @@ use crate::light::exact::Occluders;
 use crate::light::reflection::Reflectance;
 use crate::light::{BakedLight, Part, SunlitTexels, TextureFrame};
 use crate::scene::{Finish, Material, Mesh, Scene};
+use crate::texture::Normals;
 use glam::Vec3;
 
 /// Most texels of all baked surfaces of a scene together, some hundred MiB. Pieces beyond, in the
@@ -69,7 +70,7 @@ struct Side {
     apart: Vec<Prepared>,
     open_sky: Option<OpenSky>,
     /// See [`LitPiece::gloss`].
-    gloss: Vec<(Option<usize>, Prepared)>,
+    gloss: Vec<PieceGloss>,
 }
 
 impl Baked {
@@ -223,8 +224,14 @@ impl Piece {
         let (surface, lights) = (unlit.shared_surface(), (&*scene.lights, &scene.sky));
         let light = BakedLight::new(surface, &frame, lights, shares);
         let near = light.near();
+        let layer = layer(&frame, material, unlit, reflectance);
         let lit = |part: Part, near: Vec<SunlitTexels>| {
-            unlit.recolored(light.surface(part)).seen_near(near)
+            let lit = match &layer {
+                Some(layer) => unlit.glossy(light.surface(part, Normals::Kept), layer.clone()),
+                // It needs no normals any more.
+                None => unlit.recolored(light.surface(part, Normals::Dropped)),
+            };
+            lit.seen_near(near)
         };
         let (mut apart, mut open_sky) = (Vec::new(), None);
         if self.may_be_shaded(side, scene) {

@@ -1,5 +1,6 @@
 //! What pixels lie on: a material with its texture, and the polygon at places of the screen.
 
+use super::gloss::PieceGloss;
 use super::hidden_lights::HiddenLights;
 use super::mapped::{Glow, MappedGloss};
 use super::open_sky::OpenSky;
@@ -58,9 +59,9 @@ pub(crate) struct LitPiece<'a> {
     pub(crate) normal: Vec3,
     /// Under the sky alone, and under each sun alone; nothing where no mesh can hide a sun from it.
     pub(crate) apart: &'a [Prepared],
-    /// Of a glossy surface, what the horizon's highlights of each sun are made of, by the sun's
-    /// number among the lights, and what it reflects of the sky, which has none.
-    pub(crate) gloss: &'a [(Option<usize>, Prepared)],
+    /// Of a glossy surface, what the horizon's highlights of each sun are made of, and what it reflects
+    /// of the sky.
+    pub(super) gloss: &'a [PieceGloss],
     /// What meshes leave of the sky, where they hide any of it.
     pub(crate) open_sky: Option<&'a OpenSky>,
 }

@@ -10,6 +10,7 @@
 //! without relief, take the mean normal from the mip levels around the hit for all of it, over whatever
 //! relief is in between. Other meshes hide nothing.
 
+use super::gloss::PieceGloss;
 use super::ground::{Ground, in_lanes};
 use super::hidden_lights::HiddenLights;
 use super::highlights::SweptGloss;
@@ -84,6 +85,9 @@ impl Shader<'_> {
         // With a texture of metal the colours are those of the diffuse layer already.
         let has_layer = ground.material.maps.metallic.is_some();
         let dielectric = if has_layer { 1.0 } else { 1.0 - ground.material.metallic };
+        // What the layer's texels show is seen through what lies above each of them already.
+        let is_layered =
+            matches!(self.settings.filter, Filter::Horizon(_)) && ground.prepared.shows_eye();
         // The lights come in the order in which they were listed.
         let mut each = lights.iter().zip(places).enumerate();
         for (color, pixels) in colors.iter_mut().zip(&*footprints) {
@@ -94,7 +98,8 @@ impl Shader<'_> {
                 let seen = seen.get(i).copied().unwrap_or_default();
                 let on_top = self.reflected((&finish, base), texel.normal.into(), lights, seen);
                 let diffuse = Vec3::from(diffuse.map(|channel| channel[lane]));
-                lit[lane] = diffuse * (on_top.passed * dielectric) + on_top.added;
+                let passed = if is_layered { 1.0 } else { on_top.passed };
+                lit[lane] = diffuse * (passed * dielectric) + on_top.added;
             }
             *color = in_lanes(&lit);
         }
@@ -114,13 +119,12 @@ impl Shader<'_> {
         if gloss.is_empty() || !matches!(filter, Filter::Horizon(_)) {
             return Vec::new();
         }
-        let mean = mean_base(ground);
         let to_eyes: Vec<_> = lights.iter().map(|lights| lights.to_eye).collect();
         let mut sums = vec![SeenGloss::default(); lights.len()];
         let mut found = vec![Filtered::default(); pairs.len()];
         // All have the same relief.
         self.footprints((ground.unlit, &filter.traits().rule), (block, pairs), footprints);
-        for (light, gloss) in gloss {
+        for PieceGloss { sun, straight, prepared: gloss } in gloss {
             let batch = Batch { pixels: footprints, to_eyes: &to_eyes, ..Batch::default() };
             self.count(filter.colors(gloss, &batch, scratch, &mut found));
             let scale = gloss.surface().color_scale() / FULL_F32;
@@ -130,8 +134,10 @@ impl Shader<'_> {
                 sums.iter_mut().zip(seen).zip(lights).zip(places)
             {
                 let seen = Vec3::from(seen.color) * scale;
-                if let Some(sun) = light {
-                    sum.color += seen * lights.shown(*sun, &Fresnel::new(finish, mean));
+                if let Some(sun) = sun {
+                    let fresnel =
+                        Fresnel { straight: *straight, ..Fresnel::new(finish, Vec3::ONE) };
+                    sum.color += seen * lights.shown(*sun, &fresnel);
                     sum.has_suns = true;
                 } else {
                     sum.color += seen * lights.occlusion;
@@ -141,11 +147,4 @@ impl Shader<'_> {
         }
         sums
     }
-}
-
-/// The mean base colour of a surface.
-fn mean_base(ground: &Ground) -> Vec3 {
-    let surface = ground.unlit.surface();
-    let coarsest = &surface.levels()[surface.last_level()];
-    ground.color_of(surface, &coarsest.texel(0, 0))
 }

@@ -13,6 +13,8 @@
 
 mod encode;
 mod sample;
+mod sights;
+mod source;
 mod tables;
 
 pub(super) use tables::FarField;

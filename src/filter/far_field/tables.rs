@@ -1,15 +1,14 @@
 //! The tables of one surface: for which directions there are any, and how they are built.
 
 use super::encode::FarImage;
-use crate::light::{Gloss, unpack_openings};
+use super::source::Source;
+use crate::light::{Gloss, SunlitTexels};
 use crate::relief::directions::{
     Lengths, NUM_LENGTHS, SLOPES, diamond_angle, pseudo_exp, pseudo_log,
 };
-use crate::relief::seen::{Seen, View, seen_depth, seen_image, square_difference};
-use crate::simd::TexelLanes;
-use crate::texture::{FULL_F32, Surface, Wrap};
-use rayon::prelude::*;
-use std::sync::OnceLock;
+use crate::relief::seen::{View, seen_depth};
+use crate::texture::{Surface, Wrap};
+use std::sync::{Arc, OnceLock};
 
 /// Texels of a table's finest level at the most: the larger the maps, the coarser the level that
 /// tables begin on.
@@ -31,14 +30,6 @@ const AZIMUTH_POWER_OF_GLOSS: f32 = 0.3;
 /// The slope from which azimuths grow no more: at the skyline a footprint is so long that it holds
 /// what a finer direction would tell apart.
 const STEEPEST: f32 = 20.0;
-
-/// Greatest root-mean-square difference, of the surface's colour scale, that the level that tables
-/// are built from may make in what is seen. Measured: see [`LevelLoss`](crate::relief::LevelLoss).
-const MOST_SOURCE_LOSS: f32 = 0.02;
-
-/// The same as a share of what is seen, root-mean-square: in a low sun all but a few texels are dark.
-/// Bricks under one 30 degrees high lose 0.18 and show it as 9 dB next to the skyline.
-const MOST_SHARE_LOST: f32 = 0.1;
 
 /// The number of a length that is grazing, but not the skyline's.
 const GRAZING: usize = NUM_LENGTHS - 3;
@@ -65,10 +56,7 @@ pub(in crate::filter) struct FarField {
     /// at a grazing view. (Of the mean depth of all, most of which is hidden there, a blend of four
     /// is up to 6 dB worse.)
     pub(super) plane: f32,
-    /// The mip level that tables are built from.
-    source: usize,
-    /// Whose highlights they hold.
-    gloss: Option<Gloss>,
+    source: Source,
     /// By length, then azimuth: the longer the displacement, the more azimuths. Each is built when
     /// it is first asked for, since a frame asks for few of them.
     images: Vec<OnceLock<FarImage>>,
@@ -80,7 +68,7 @@ impl FarField {
     /// each direction sees them.
     pub(in crate::filter) fn new(
         surface: &Surface,
-        gloss: Option<Gloss>,
+        (gloss, sunlit): (Option<Gloss>, Arc<[SunlitTexels]>),
         mib: u32,
     ) -> Option<Self> {
         let num_texels = |level: &usize| surface.levels()[*level].size().iter().product::<usize>();
@@ -91,17 +79,20 @@ impl FarField {
         }
         let lengths = Lengths::new(surface);
         let power = if gloss.is_some() { AZIMUTH_POWER_OF_GLOSS } else { AZIMUTH_POWER };
+        let plane = grazing_depth(surface, first_level, &lengths);
+        let views = PROBED_LENGTHS.into_iter().flat_map(|length| {
+            let displacement = move |angle| lengths.displacement(length, angle);
+            PROBED_ANGLES.map(displacement).map(|displacement| View { displacement, plane })
+        });
+        let probes = (surface.levels()[first_level].size(), &*views.collect::<Vec<_>>());
         let mut far = Self {
             first_level,
             lengths,
             starts: table_starts(surface, first_level, (mib, power)),
-            plane: grazing_depth(surface, first_level, &lengths),
-            source: 0,
-            gloss,
+            plane,
+            source: Source::new(surface, (gloss, sunlit), probes),
             images: Vec::new(),
         };
-        // A level's mean normals would show other highlights.
-        far.source = if far.gloss.is_some() { 0 } else { far.source_level(surface) };
         far.images.resize_with(far.starts[NUM_LENGTHS], OnceLock::new);
         Some(far)
     }
@@ -111,51 +102,11 @@ impl FarField {
     pub(super) fn image(&self, surface: &Surface, index: usize) -> &FarImage {
         self.images[index].get_or_init(|| {
             let length = self.starts.partition_point(|start| *start <= index) - 1;
-            let view = self.view(self.displacement(length, index - self.starts[length]));
+            let displacement = self.displacement(length, index - self.starts[length]);
+            let view = View { displacement, plane: self.plane };
             let size = surface.levels()[self.first_level].size();
-            let Some(gloss) = &self.gloss else {
-                let seen = seen_image(surface, Seen::Colors, self.source, size, view);
-                return FarImage::new(size, seen, 1.0);
-            };
-            let texels = surface.base().texels_per_repeat();
-            let [du, dv] = view.displacement;
-            let to_eye = gloss.to_eye([du / texels[0], dv / texels[1]]);
-            let to_eye = to_eye.to_array().map(TexelLanes::splat);
-            let shown = |[color, normal]: [_; 2], word| {
-                let directions = [normal, unpack_openings(word), to_eye];
-                gloss.shown((color, FULL_F32), directions, true)
-            };
-            let is_turned = du.abs() > dv.abs();
-            let others = gloss.openings().map(|openings| openings.rows(self.source, is_turned));
-            let seen = Seen::Shining(&shown, others);
-            let seen = seen_image(surface, seen, self.source, size, view);
-            // Highlights are as bright as a surface is smooth.
-            let brightest = seen.iter().flatten().fold(f32::MIN_POSITIVE, |a, b| a.max(*b));
-            FarImage::new(size, seen, brightest)
+            self.source.table(surface, size, view)
         })
-    }
-
-    /// The coarsest level, up to 1, whose sweep shows nearly what the base level's does: a quarter
-    /// of the work.
-    fn source_level(&self, surface: &Surface) -> usize {
-        let size = surface.levels()[self.first_level].size();
-        let probes: Vec<_> = PROBED_LENGTHS
-            .into_iter()
-            .flat_map(|i| PROBED_ANGLES.map(|angle| (i, angle)))
-            .collect();
-        let shows_nearly_all = |&(i, angle): &(usize, f32)| {
-            let view = self.view(self.lengths.displacement(i, angle));
-            let [exact, coarse] =
-                [0, 1].map(|level| seen_image(surface, Seen::Colors, level, size, view));
-            let loss = square_difference(&exact, &coarse).sqrt();
-            let seen = square_difference(&exact, &vec![[0.0; 3]; exact.len()]).sqrt();
-            loss < MOST_SOURCE_LOSS.min(MOST_SHARE_LOST * seen)
-        };
-        usize::from(self.first_level > 1 && probes.par_iter().all(shows_nearly_all))
-    }
-
-    fn view(&self, displacement: [f32; 2]) -> View {
-        View { displacement, plane: self.plane }
     }
 
     fn num_azimuths(&self, length: usize) -> usize {

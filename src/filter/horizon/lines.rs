@@ -271,6 +271,24 @@ impl<const HALVES: bool> Step<'_, HALVES> {
         (values, height)
     }
 
+    /// The square of how much normals change from one line to the next.
+    #[inline(always)]
+    pub(super) fn normals_across(&self) -> LineLanes {
+        let Lines { frame, grid, .. } = self.lines;
+        let rows = frame.rows;
+        if !rows.has_normals() {
+            return LineLanes::ZERO;
+        }
+        let start = self.steps.starts[0][self.i] + 2 * rows.stride();
+        let [near, far] = self.between.words_at(rows.words(), start).map(|words| {
+            let [a, b] = halves(words).map(unpack_normals);
+            [0, 1, 2].map(|i| join([a[i], b[i]]))
+        });
+        let distance = (grid.spacing * self.steps.scales[self.i]).min(1.0);
+        let [x, y, z] = [0, 1, 2].map(|i| far[i] - near[i]);
+        (x * x + y * y + z * z) * (distance * distance)
+    }
+
     /// Where the runs of texels start among the words of its row, and among what else is read of
     /// it; and the same of the row behind, if it lies half way between rows.
     #[inline(always)]

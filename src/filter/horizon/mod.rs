@@ -39,6 +39,7 @@ mod show;
 mod sunlit;
 mod sweep;
 mod sweep_frame;
+mod swept;
 mod walk;
 
 pub(crate) use place::lit_at;
@@ -47,6 +48,7 @@ use super::batch::{Batch, Filtered, LevelChoice, Work};
 use super::far_field::FarField;
 use super::prepared::Prepared;
 use crate::footprint::{Ellipses, Footprints};
+use crate::light::Gloss;
 use crate::settings::Horizon;
 use crate::simd::PixelLanes;
 use crate::texture::{Surface, Texel};
@@ -66,6 +68,12 @@ const BINS: f32 = 0.375;
 const BAKED_BINS: f32 = 0.6;
 const LIT_BINS: f32 = 1.6;
 const LEAST_BINS: f32 = 4.0;
+
+/// Bins and lines of what is reflected of lights: lobes are sharper than shadows. Measured on metal of
+/// roughness 0.3 near by, see the results of November 2026: as many as of what is lit have 35 dB, these
+/// 39 in 1.2 of the time, twice as many 43.
+const SHINY_BINS: f32 = 1.2;
+const SHINY_LINES: f32 = 2.8;
 
 /// Lines of what is lit for good, as a share of those of what is not. Shadows have sharper edges than
 /// albedo, and bins pay better than lines there: see the results of November 2026.
@@ -115,6 +123,11 @@ pub(super) fn colors(
         let lanes = pixels.iter().zip(&*shares).flat_map(|(p, s)| p.covered().map(|i| s[i]));
         let seen_near = lanes.zip(&mut to_eyes).filter(|(share, _)| *share < 1.0);
         near_eyes.extend(seen_near.map(|(_, to_eye)| *to_eye));
+        if let Some(gloss) = prepared.gloss().filter(|_| batch.to_eyes.is_empty()) {
+            let displacement =
+                |pick: &u8| pixels[usize::from(pick / 8)].lane(usize::from(pick % 8)).displacement;
+            near_eyes.extend(near.iter().map(|pick| gloss.to_eye(displacement(pick))));
+        }
         let curved = batch.curved.map(|curved| curved.part(i * NUM_VECTORS, pixels.len()));
         let light = curved.as_ref().and_then(|curved| Some((curved, prepared.horizons()?)));
         let patches = Patches {
@@ -228,10 +241,20 @@ fn share_out(
 fn picture_bins(prepared: &Prepared, horizon: &Horizon, is_lit: bool) -> f32 {
     let bins = match is_lit {
         true => LIT_BINS,
+        false if prepared.gloss().is_some_and(Gloss::is_shiny) => SHINY_BINS,
         false if prepared.is_lit() => BAKED_BINS,
         false => BINS,
     };
     (horizon.lines as f32 * bins).max(LEAST_BINS)
+}
+
+/// Lines of a picture as a share of those that the settings ask for.
+fn lines_of(prepared: &Prepared) -> f32 {
+    match prepared.gloss() {
+        Some(gloss) if gloss.is_shiny() => SHINY_LINES,
+        _ if prepared.is_lit() => BAKED_LINES,
+        _ => 1.0,
+    }
 }
 
 fn patches<'a>(
@@ -254,7 +277,7 @@ fn patches<'a>(
         base,
         horizon,
         num_bins,
-        num_lines: horizon.lines as f32 * if prepared.is_lit() { BAKED_LINES } else { 1.0 },
+        num_lines: horizon.lines as f32 * lines_of(prepared),
         is_lit,
         shows_light: is_lit || prepared.is_lit(),
         is_alone: false,

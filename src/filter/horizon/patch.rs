@@ -5,23 +5,17 @@
 //! swept, or only told to who asks for the levels.
 
 use super::bow::mean_bow;
-use super::glossy::PatchGloss;
 use super::grid::Profile;
 use super::kernel::Totals;
-use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
 use super::plan::{Extent, Plan, WIDEST, in_whole_groups};
-use super::shine::PatchShine;
-use super::show::{Interpolated, Texels};
-use super::sunlit::PatchSun;
 use super::sweep_frame::{SweepFrame, means};
-use crate::filter::points;
 use crate::footprint::levels::{SweepExtent, for_sweep};
 use crate::footprint::{Ellipses, Footprints};
 use crate::light::{Curved, Gloss, Horizons, LocalLights, SunlitTexels};
 use crate::relief::LevelLoss;
 use crate::settings::Horizon;
-use crate::simd::{BETWEEN_SCALE, PixelLanes, bits_mask};
+use crate::simd::{PixelLanes, bits_mask};
 use crate::texture::{Surface, Texel};
 use glam::Vec3;
 
@@ -57,12 +51,12 @@ const LONE_LONGER: f32 = 3.0;
 /// Buffers of sweeps, kept between them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PatchScratch {
-    unlit: Profile<3>,
-    lit: Profile<6>,
+    pub(super) unlit: Profile<3>,
+    pub(super) lit: Profile<6>,
     picked: Vec<PixelLanes>,
     ellipses: Vec<Ellipses>,
-    pixels: Vec<PixelOnLines>,
-    totals: Vec<Totals>,
+    pub(super) pixels: Vec<PixelOnLines>,
+    pub(super) totals: Vec<Totals>,
 }
 
 /// Pixels that are asked for. A pick is a pixel's vector times 8 plus its lane; picks ascend.
@@ -224,62 +218,6 @@ impl<'a> Patches<'a> {
         let spacing = (WIDEST / most_scale).min(extent.half_width * (2.0 / num_lines));
         let spacing = in_whole_groups(extent.xi[1] - extent.xi[0], spacing, WIDEST / most_scale);
         Some(Plan { level, frame, extent, most_scale, spacing, step })
-    }
-
-    /// Sweeps a planned patch.
-    fn sweep(
-        &self,
-        plan: &Plan,
-        Picks { picks, lights, to_eyes }: Picks,
-        scratch: &mut PatchScratch,
-        found: &mut [Texel],
-    ) -> u64 {
-        let PatchScratch { unlit, lit, pixels, totals, .. } = scratch;
-        totals.clear();
-        totals.resize(picks.len(), Totals::default());
-        let is_turned = plan.frame.is_turned;
-        let num_rows = if self.is_lit {
-            plan.run::<6>(&Interpolated(Texels), lit, (pixels, lights), totals)
-        } else if let Some((curved, horizons)) = self.light {
-            let light =
-                PatchLight::new(curved, horizons.rows(plan.level, is_turned), picks, pixels);
-            if light.is_dark() {
-                found.fill(Texel::default());
-                return 0;
-            }
-            if let Some(shine) = &curved.shine {
-                let unit = (BETWEEN_SCALE, plan.level == 0);
-                let shine = PatchShine::new(&light, shine, (picks, pixels), unit);
-                plan.run(&Interpolated(&shine), unlit, (pixels, &[]), totals)
-            } else {
-                plan.run(&Interpolated(&light), unlit, (pixels, &[]), totals)
-            }
-        } else if let Some(gloss) = self.gloss {
-            let gloss = PatchGloss::new(gloss, to_eyes, pixels, (plan.level, is_turned));
-            plan.run(&Interpolated(&gloss), unlit, (pixels, &[]), totals)
-        } else if plan.is_near() && !self.sunlit.is_empty() {
-            let mut num_rows = 0;
-            for sunlit in self.sunlit {
-                let sun = PatchSun::new(sunlit, self.surface, is_turned);
-                let plan = plan.on(sunlit.surface().base());
-                num_rows += plan.run(&sun, unlit, (pixels, &[]), totals);
-            }
-            totals.iter_mut().for_each(|totals| totals.are_parts(self.sunlit.len()));
-            num_rows
-        } else {
-            plan.run(&Interpolated(Texels), unlit, (pixels, &[]), totals)
-        };
-        for ((found, totals), pick) in found.iter_mut().zip(totals).zip(picks) {
-            // Where no line meets the ellipse, the texels around the base place stand for it.
-            let mean = totals.mean(self.is_lit).unwrap_or_else(|| {
-                let pixel = self.pixels[usize::from(pick / 8)].lane(usize::from(pick % 8));
-                points::bilinear(&self.surface.levels()[plan.level], pixel.base)
-            });
-            // Written one f32 at a time: a vector store followed by scalar loads would stall store
-            // forwarding.
-            (found.color, found.normal) = (mean.color, mean.normal);
-        }
-        num_rows
     }
 
     /// What so many pixels sweep, as their level is to see it: what few of them sweep is larger for

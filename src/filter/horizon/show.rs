@@ -1,7 +1,6 @@
 //! What a sweep shows: what is read of the texels that lines see, and what the segments between two
 //! of them show for it.
 
-use super::glossy::PatchGloss;
 use super::lines::Step;
 use super::lit::PatchLight;
 use super::shine::PatchShine;
@@ -22,8 +21,8 @@ pub(super) trait Show<const CHANNELS: usize> {
     /// Reads the texels of a step.
     fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> Self::Values;
 
-    /// What is shown at a part of the way between two texels.
-    fn between(&self, texels: [&Self::Values; 2], part: LineLanes) -> [LineLanes; CHANNELS];
+    /// What is shown on a part of the way between two texels.
+    fn between(&self, texels: [&Self::Values; 2], part: &Part) -> [LineLanes; CHANNELS];
 
     /// Sums, and so much more of that.
     #[inline(always)]
@@ -31,12 +30,19 @@ pub(super) trait Show<const CHANNELS: usize> {
         &self,
         sums: [LineLanes; CHANNELS],
         texels: [&Self::Values; 2],
-        part: LineLanes,
+        part: &Part,
         length: LineLanes,
     ) -> [LineLanes; CHANNELS] {
         let shown = self.between(texels, part);
         std::array::from_fn(|i| sums[i] + shown[i] * length)
     }
+}
+
+/// A part of the way between two texels, 0 the last and 1 the next.
+#[derive(Clone, Copy)]
+pub(super) struct Part {
+    pub(super) middle: LineLanes,
+    pub(super) length: LineLanes,
 }
 
 /// What texels show by themselves.
@@ -71,18 +77,18 @@ impl<const CHANNELS: usize, T: ShowTexels<CHANNELS>> Show<CHANNELS> for Interpol
         &self,
         mut sums: [LineLanes; CHANNELS],
         [last, next]: [&Self::Values; 2],
-        part: LineLanes,
+        part: &Part,
         length: LineLanes,
     ) -> [LineLanes; CHANNELS] {
-        let of_next = length * part;
+        let of_next = length * part.middle;
         let of_last = length - of_next;
         (0..CHANNELS).for_each(|i| sums[i] = sums[i] + next[i] * of_next + last[i] * of_last);
         sums
     }
 
     #[inline(always)]
-    fn between(&self, [last, next]: [&Self::Values; 2], part: LineLanes) -> [LineLanes; CHANNELS] {
-        std::array::from_fn(|i| last[i] + (next[i] - last[i]) * part)
+    fn between(&self, [last, next]: [&Self::Values; 2], part: &Part) -> [LineLanes; CHANNELS] {
+        std::array::from_fn(|i| last[i] + (next[i] - last[i]) * part.middle)
     }
 }
 
@@ -129,19 +135,5 @@ impl ShowTexels<3> for &PatchShine<'_> {
         let ([r, g, b, x, y, z], height) = step.values();
         let [xi, p] = step.seen_at();
         self.at((step.other(), &step.between), [[r, g, b], [x, y, z]], [xi, p, height], step.q())
-    }
-}
-
-/// What a flat piece of a surface reflects of a sun or of the sky.
-impl ShowTexels<3> for &PatchGloss<'_> {
-    #[inline(always)]
-    fn others(&self) -> Option<&Rows> {
-        self.openings
-    }
-
-    #[inline(never)]
-    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> [LineLanes; 3] {
-        let ([r, g, b, x, y, z], _) = step.values();
-        self.at([[r, g, b], [x, y, z]], step.seen_at(), (step.other(), &step.between))
     }
 }

@@ -2,84 +2,70 @@
 //! where the relief rises out of it. See [`SunlitTexels`].
 
 use super::lines::Step;
-use super::show::Show;
-use crate::light::{SunlitLanes, SunlitTexels};
+use super::show::{Part, Show};
+use crate::light::{Sunlight, Sunlit, SunlitTexels};
 use crate::simd::{BETWEEN_SCALE, LineLanes};
 use crate::texture::{FULL_F32, Rows, Surface};
-
-/// Least length of a mean normal that is divided by.
-const LEAST_LENGTH: f32 = 1e-3;
 
 /// A sun over the lines of a patch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PatchSun<'a> {
-    texels: &'a SunlitTexels,
     rows: &'a Rows,
-    /// What the sun and the brightest sky add to a colour, in units of the lit surface's.
-    intensity: [f32; 3],
-    brightest: f32,
-}
-
-/// Texels of a group of lines in the light of a sun, one of each.
-#[derive(Clone, Copy)]
-pub(super) struct Sunlit {
-    albedo: [LineLanes; 3],
-    normal: [LineLanes; 3],
-    /// How high they lie above the middle of the shadow's edge, and how wide that is.
-    above: LineLanes,
-    width: LineLanes,
-    /// The part of the sun's light that they show, and the light of the sky.
-    share: LineLanes,
-    sky: [LineLanes; 3],
+    light: Sunlight,
 }
 
 impl<'a> PatchSun<'a> {
     /// Over lines along rows of the base level of a lit surface.
     pub(super) fn new(texels: &'a SunlitTexels, lit: &Surface, is_turned: bool) -> Self {
-        let unit = texels.surface().color_scale() / lit.color_scale();
-        let intensity = (texels.intensity * unit).to_array();
-        let brightest = texels.brightest * unit;
-        Self { texels, rows: texels.rows(is_turned), intensity, brightest }
-    }
-
-    /// The texels of a row of a step, by where it starts.
-    #[inline(always)]
-    fn row<const HALVES: bool>(&self, step: &Step<'_, HALVES>, starts: [usize; 2]) -> Sunlit {
-        let ([r, g, b, x, y, z], height) = step.values_at(starts[0]);
-        let SunlitLanes { edge: [middle, width], share, sky } =
-            SunlitLanes::new(self.rows, starts[1], &step.between);
-        let above = height * (1.0 / (FULL_F32 * BETWEEN_SCALE)) - middle;
-        Sunlit { albedo: [r, g, b], normal: [x, y, z], above, width, share, sky }
+        Self { rows: texels.rows(is_turned), light: texels.light(lit) }
     }
 }
 
-impl Sunlit {
-    /// At a part of the way to the next.
-    #[inline(always)]
-    fn mix(&self, next: &Self, part: LineLanes) -> Self {
-        let mix = |a: LineLanes, b: LineLanes| a + (b - a) * part;
-        Self {
-            albedo: std::array::from_fn(|i| mix(self.albedo[i], next.albedo[i])),
-            normal: std::array::from_fn(|i| mix(self.normal[i], next.normal[i])),
-            above: mix(self.above, next.above),
-            width: mix(self.width, next.width),
-            share: mix(self.share, next.share),
-            sky: std::array::from_fn(|i| mix(self.sky[i], next.sky[i])),
-        }
+/// The texels of a row of a step, by where it starts among the words of a surface and of
+/// [`SunlitTexels`].
+#[inline(always)]
+fn row<const HALVES: bool>(
+    rows: &Rows,
+    step: &Step<'_, HALVES>,
+    starts: [usize; 2],
+) -> Sunlit<LineLanes> {
+    let ([r, g, b, x, y, z], height) = step.values_at(starts[0]);
+    let words =
+        [0, 1].map(|plane| step.between.words_at(rows.words(), starts[1] + plane * rows.stride()));
+    let height = height * (1.0 / (FULL_F32 * BETWEEN_SCALE));
+    Sunlit::new([[r, g, b], [x, y, z]], height, |plane, first, most| {
+        step.between.bits_of(words[plane], first, most) * (1.0 / (most as f32 * BETWEEN_SCALE))
+    })
+}
+
+/// The texels of a step with the edges that rows of [`SunlitTexels`] say.
+#[inline(always)]
+pub(super) fn sunlit<const HALVES: bool>(
+    rows: &Rows,
+    step: &Step<'_, HALVES>,
+) -> Sunlit<LineLanes> {
+    let (near, far) = step.starts();
+    let near = row(rows, step, near);
+    match far {
+        Some(far) => near.mix(&row(rows, step, far), LineLanes::HALF),
+        None => near,
     }
 }
+
+/// No texels.
+pub(super) const DARK: Sunlit<LineLanes> = Sunlit {
+    albedo: [LineLanes::ZERO; 3],
+    normal: [LineLanes::ZERO; 3],
+    above: LineLanes::ZERO,
+    width: LineLanes::ONE,
+    share: LineLanes::ZERO,
+    sky: [LineLanes::ZERO; 3],
+};
 
 impl Show<3> for PatchSun<'_> {
-    type Values = Sunlit;
+    type Values = Sunlit<LineLanes>;
 
-    const NONE: Sunlit = Sunlit {
-        albedo: [LineLanes::ZERO; 3],
-        normal: [LineLanes::ZERO; 3],
-        above: LineLanes::ZERO,
-        width: LineLanes::ONE,
-        share: LineLanes::ZERO,
-        sky: [LineLanes::ZERO; 3],
-    };
+    const NONE: Self::Values = DARK;
 
     #[inline(always)]
     fn others(&self) -> Option<&Rows> {
@@ -87,25 +73,14 @@ impl Show<3> for PatchSun<'_> {
     }
 
     #[inline(always)]
-    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> Sunlit {
-        let (near, far) = step.starts();
-        let row = self.row(step, near);
-        match far {
-            Some(far) => row.mix(&self.row(step, far), LineLanes::HALF),
-            None => row,
-        }
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> Self::Values {
+        sunlit(self.rows, step)
     }
 
     #[inline(always)]
-    fn between(&self, [last, next]: [&Sunlit; 2], part: LineLanes) -> [LineLanes; 3] {
+    fn between(&self, [last, next]: [&Self::Values; 2], part: &Part) -> [LineLanes; 3] {
         // Lines that see nothing of a segment ask for places far beyond its ends.
-        let part = part.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
-        let Sunlit { albedo, normal: [x, y, z], above, width, share, sky } = last.mix(next, part);
-        let to_sun = self.texels.to_sun;
-        let cosine = (x * to_sun.x + y * to_sun.y + z * to_sun.z).fast_max(LineLanes::ZERO);
-        let length = (x * x + y * y + z * z).sqrt().fast_max(LineLanes::splat(LEAST_LENGTH));
-        let seen = (above / width + 0.5).fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
-        let sun = cosine * seen * share / length;
-        std::array::from_fn(|i| albedo[i] * (sky[i] * self.brightest + sun * self.intensity[i]))
+        let middle = part.middle.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
+        last.mix(next, middle).shown(&self.light)
     }
 }

@@ -17,7 +17,7 @@
 //! ```
 
 use super::grid::{GROUP, Row};
-use super::show::Show;
+use super::show::{Part, Show};
 use crate::simd::{LineLanes, set_bits};
 
 /// Least length of a segment, in bins, that a place in it is divided by: a shorter one shows one
@@ -78,10 +78,12 @@ impl<V: Copy> Segment<V> {
         let Self { last, next, half_inverse } = self;
         // Where the middle lies between the last texel (0) and the next one (1).
         let middle = ((from - last.place) + (to - last.place)) * *half_inverse;
-        show.added_to(sums, [&last.values, &next.values], middle, to - from)
+        let length = to - from;
+        let part = Part { middle, length: length * (*half_inverse + *half_inverse) };
+        show.added_to(sums, [&last.values, &next.values], &part, length)
     }
 
-    /// What is shown at places.
+    /// What is shown on bins around places.
     #[inline(always)]
     fn at<const CHANNELS: usize>(
         &self,
@@ -89,8 +91,9 @@ impl<V: Copy> Segment<V> {
         place: LineLanes,
     ) -> [LineLanes; CHANNELS] {
         let Self { last, next, half_inverse } = self;
-        let part = (place - last.place) * (*half_inverse + *half_inverse);
-        show.between([&last.values, &next.values], part)
+        let length = *half_inverse + *half_inverse;
+        let part = Part { middle: (place - last.place) * length, length };
+        show.between([&last.values, &next.values], &part)
     }
 }
 
