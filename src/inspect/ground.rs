@@ -48,7 +48,11 @@ pub(super) struct QuadPixel<'a> {
 
 impl Ground {
     /// What is seen at the centre of a pixel.
-    pub(super) fn at(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Option<Self> {
+    pub(super) fn at(
+        (scene, prepared): (&Scene, &PreparedScene),
+        settings: &Settings,
+        pixel: [u32; 2],
+    ) -> Option<Self> {
         let [x, y] = pixel;
         // Lit planes say where a pixel is in the world.
         let settings = Settings {
@@ -57,7 +61,7 @@ impl Ground {
             region: Some(Region { x, y, width: 1, height: 1 }),
             ..settings.clone()
         };
-        let (geometry, prepared) = (geometry::project(scene, &settings), PreparedScene::new(scene));
+        let geometry = geometry::project(scene, &settings);
         let outlines = prepared.outlines(scene, &settings, geometry.projection());
         let outlines = outlines.as_ref();
         let passages = Passages::new(scene, geometry.projection(), outlines);

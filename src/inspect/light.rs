@@ -3,9 +3,9 @@
 use super::cut::Cut;
 use super::ground::QuadPixel;
 use crate::filter::Prepared;
-use crate::light::exact::{Clearance, ExactLight, Hit, Occluders, Reaching, Spot};
+use crate::light::exact::{Clearance, ExactLight, Hit, Reaching, Spot};
 use crate::light::{SurfacePoint, TextureFrame};
-use crate::scene::{Light, Material, Scene};
+use crate::scene::{Light, Material};
 use glam::Vec3;
 
 /// Rays to each light and to the sky.
@@ -52,17 +52,15 @@ pub(super) fn plain_hit(material: &Material, point: SurfacePoint) -> Hit<'static
 impl PixelLight {
     /// Of a pixel and what it sees.
     pub(super) fn new(
-        scene: &Scene,
+        exact: &ExactLight,
         prepared: &Prepared,
         (seen, hit): (&QuadPixel, &Hit),
         max_anisotropy: f32,
     ) -> Self {
-        let occluders = Occluders::new(scene);
-        let exact = ExactLight { scene, occluders: &occluders };
         let reaching = exact.reaching(hit, RAYS);
         let (main, point) = (reaching.main(), &hit.point);
         let cut = main.zip(prepared.field()).and_then(|(main, field)| {
-            let to_light = match scene.lights[main] {
+            let to_light = match exact.scene.lights[main] {
                 Light::Sun { to_light, .. } => to_light,
                 Light::Point { position, .. } => position - point.position,
             };

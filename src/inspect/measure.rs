@@ -268,7 +268,8 @@ impl Probe<'_> {
         let of_polygon = || surface_point(planes, pixel_center(pair, lane));
         let Some(point) = above.or_else(of_polygon) else { return [0.0; 3] };
         let occluders = self.prepared.occluders(self.scene);
-        let exact = ExactLight { scene: self.scene, occluders };
+        let outlined = self.outlines.and_then(Outlines::outlined);
+        let exact = ExactLight { scene: self.scene, occluders, outlined };
         let mut hit = hit(point);
         let at = (pixel_center(pair, lane), &point);
         hit.clearance = clearance(self.scene, (planes, hit.spot.relief), at);

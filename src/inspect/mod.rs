@@ -38,6 +38,8 @@ pub use sets::Sets;
 
 use crate::error::{Error, Result};
 use crate::filter::Prepared;
+use crate::light::exact::ExactLight;
+use crate::render::PreparedScene;
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
 use crate::texture::FULL_F32;
@@ -87,7 +89,8 @@ pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Insp
             format!("is outside the frame of {}x{}", settings.width, settings.height),
         ));
     }
-    let ground = Ground::at(scene, settings, pixel)
+    let all = PreparedScene::new(scene);
+    let ground = Ground::at((scene, &all), settings, pixel)
         .ok_or_else(|| Error::scene(name(), "sees no surface"))?;
     let material = &scene.materials[ground.material];
     let surface = material
@@ -104,7 +107,9 @@ pub fn pixel(scene: &Scene, settings: &Settings, pixel: [u32; 2]) -> Result<Insp
     let light = point.map(|point| {
         let mut hit = hit_of(material, &prepared, &seen, point);
         hit.clearance = ground.clearance(scene, &hit);
-        PixelLight::new(scene, &prepared, (&seen, &hit), most)
+        let (occluders, outlined) = (all.occluders(scene), all.outlined(scene, settings));
+        let exact = ExactLight { scene, occluders, outlined: outlined.as_ref() };
+        PixelLight::new(&exact, &prepared, (&seen, &hit), most)
     });
     Ok(Inspection {
         pixel,

@@ -12,6 +12,7 @@ use crate::light::exact::{Ceiling, Occluders, Receiver, Spots};
 use crate::light::{FrameLanes, Vectors, cross, repeat_length};
 use crate::raster::{LitLanes, QuadBlock, QuadPair};
 use crate::relief::{HeightField, displacement};
+use crate::shell::Outlined;
 use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
 
@@ -50,7 +51,7 @@ impl Shader<'_> {
                     }
                 }
             }
-            hide(occluders, ceiling, &open, &mut hidden);
+            hide((occluders, self.outlined), ceiling, &open, &mut hidden);
             hidden
         };
         for (ceiling, hidden) in self.prepared.ceilings(self.scene).iter().zip(&mut hidden.lights) {
@@ -64,7 +65,7 @@ impl Shader<'_> {
 /// Sets the parts of a sun that are not seen from places of pairs, by their numbers, whose unit
 /// normals are given.
 fn hide(
-    occluders: &Occluders,
+    (occluders, outlined): (&Occluders, Option<&Outlined>),
     ceiling: &Ceiling,
     pairs: &[(usize, Places, Vectors)],
     hidden: &mut [PixelLanes],
@@ -81,8 +82,8 @@ fn hide(
         return;
     };
     let disc = ceiling.disc();
-    let sun = Hidden::new(&disc, occluders.between(&receiver, &disc));
-    pairs.iter().for_each(|(i, places, _)| hidden[*i] = sun.share(places, receiver.middle));
+    let sun = Hidden::new((occluders, outlined), &receiver, &disc);
+    pairs.iter().for_each(|(i, places, _)| hidden[*i] = sun.share(places));
 }
 
 /// The view rays of a pair on a curved surface, between the polygon and the deepest relief.

@@ -4,7 +4,7 @@ use crate::geometry::{Plane, Projection, ScreenBasis};
 use crate::light::SurfacePoint;
 use crate::relief::HeightField;
 use crate::scene::{Eye, Mesh, Scene};
-use crate::shell::{Course, Met, Passable, ReliefHit, Shell, ViewRay, Width};
+use crate::shell::{Course, Met, Outlined, Passable, ReliefHit, Shell, ViewRay, Width};
 use crate::simd::{PixelLanes, set_bits};
 use glam::{DVec3, Vec3};
 
@@ -15,6 +15,8 @@ pub(crate) struct Outlines<'a> {
     eye: Eye,
     /// Of each mesh that has any.
     reliefs: Vec<Option<Relief<'a>>>,
+    /// The same for light, of meshes that it may pass and that have no holes.
+    outlined: Option<Outlined<'a>>,
 }
 
 /// Where rays may pass that may do so all over a triangle: see [`Follow::passable`](crate::raster::Follow::passable).
@@ -22,6 +24,20 @@ pub(super) const EVERYWHERE: Plane = [0.0, 0.0, -1.0];
 
 /// The relief of a mesh.
 pub(super) type Relief<'a> = (&'a Shell, &'a HeightField);
+
+/// The meshes of a scene that throw the shadow of their relief, and not of their polygons.
+pub(super) fn outlined<'a>(
+    scene: &'a Scene,
+    reliefs: &[Option<Relief<'a>>],
+) -> Option<Outlined<'a>> {
+    let is_passed = |mesh: &Mesh, (shell, _): &Relief| {
+        // Triangles with holes are cut into pieces, which stop light as they are.
+        shell.is_curved() && scene.cut_out(mesh).is_none()
+    };
+    let all = scene.meshes.iter().zip(reliefs);
+    let passed = all.map(|(mesh, relief)| relief.filter(|relief| is_passed(mesh, relief)));
+    Outlined::new(&scene.meshes, passed.collect())
+}
 
 impl<'a> Outlines<'a> {
     /// Of a scene with its projection and the reliefs of its meshes; `None` where each ray meets the
@@ -40,7 +56,15 @@ impl<'a> Outlines<'a> {
         let has_any = reliefs.iter().flatten().next().is_some() && scene.meshes.len() > 1
             || scene.meshes.iter().zip(&reliefs).any(is_asked);
         let eye = scene.camera.viewpoint();
-        has_any.then_some(Self { scene, projection, eye, reliefs })
+        has_any.then(|| {
+            let outlined = outlined(scene, &reliefs);
+            Self { scene, projection, eye, reliefs, outlined }
+        })
+    }
+
+    /// The meshes that throw the shadow of their relief.
+    pub(crate) fn outlined(&self) -> Option<&Outlined<'a>> {
+        self.outlined.as_ref()
     }
 
     /// Whether a mesh has a relief that is curved: followed rays then find what straight ones do not.

@@ -16,6 +16,7 @@ use crate::light::exact::{LightRay, Occluders, Receiver};
 use crate::raster::{LitLanes, QuadBlock};
 use crate::relief::HeightField;
 use crate::scene::Light;
+use crate::shell::Outlined;
 use crate::simd::{PixelLanes, set_bits};
 use glam::Vec3;
 use std::ops::Range;
@@ -52,7 +53,7 @@ impl Shader<'_> {
             let Light::Point { position, .. } = *light else { continue };
             if occluders.may_hide(&receiver, position) {
                 let of = |(places, is_back): &(Places, u8)| {
-                    hidden_part(occluders, position, places, *is_back)
+                    hidden_part((occluders, self.outlined), position, places, *is_back)
                 };
                 *hidden = pixels.iter().map(of).collect();
             }
@@ -115,7 +116,12 @@ impl Shader<'_> {
 }
 
 /// The parts of pixels from which meshes hide a point.
-fn hidden_part(occluders: &Occluders, light: Vec3, places: &Places, is_back: u8) -> PixelLanes {
+fn hidden_part(
+    (occluders, outlined): (&Occluders, Option<&Outlined>),
+    light: Vec3,
+    places: &Places,
+    is_back: u8,
+) -> PixelLanes {
     let mut nums = [0; 8];
     let count = |nums: &mut [usize; 8], lanes: u8, ray: usize| {
         let starts = places.start(ray);
@@ -127,7 +133,7 @@ fn hidden_part(occluders: &Occluders, light: Vec3, places: &Places, is_back: u8)
             let reach = f64::from(places.reach.as_array()[lane]);
             let is_turned = is_back >> lane & 1 == 1;
             let ray = LightRay { from, direction, distance, reach, is_turned };
-            nums[lane] += usize::from(occluders.hide(&ray));
+            nums[lane] += usize::from(occluders.hide(&ray, outlined));
         }
     };
     FIRST.into_iter().for_each(|ray| count(&mut nums, places.covered, ray));

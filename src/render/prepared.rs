@@ -3,7 +3,7 @@
 use super::baked::Baked;
 use super::ground::{Ground, Swept};
 use super::mapped::Mapped;
-use super::outlines::Outlines;
+use super::outlines::{Outlines, Relief, outlined};
 use super::skies::Skies;
 use crate::filter::Prepared;
 use crate::geometry::Projection;
@@ -13,7 +13,7 @@ use crate::light::reflection::Reflectance;
 use crate::relief::HeightField;
 use crate::scene::{Light, Material, Mesh, Scene};
 use crate::settings::{Lighting, Settings};
-use crate::shell::Shell;
+use crate::shell::{Outlined, Shell};
 use crate::texture::Surface;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -209,13 +209,25 @@ impl PreparedScene {
         settings: &Settings,
         projection: &'a Projection,
     ) -> Option<Outlines<'a>> {
-        if !settings.has_outlines() {
-            return None;
-        }
+        let reliefs = settings.has_outlines().then(|| self.reliefs(scene))?;
+        Outlines::new(scene, projection, reliefs)
+    }
+
+    /// The meshes that throw the shadow of their relief, if settings ask for it: what
+    /// [outlines](Self::outlines) know of light.
+    pub(crate) fn outlined<'a>(
+        &'a self,
+        scene: &'a Scene,
+        settings: &Settings,
+    ) -> Option<Outlined<'a>> {
+        outlined(scene, &settings.has_outlines().then(|| self.reliefs(scene))?)
+    }
+
+    fn reliefs<'a>(&'a self, scene: &Scene) -> Vec<Option<Relief<'a>>> {
         let meshes = scene.meshes.iter().zip(self.shells(scene));
         let relief =
             |(mesh, shell): (_, &'a Option<Shell>)| shell.as_ref().zip(self.field_of(mesh));
-        Outlines::new(scene, projection, meshes.map(relief).collect())
+        meshes.map(relief).collect()
     }
 
     fn field_of(&self, mesh: &Mesh) -> Option<&HeightField> {

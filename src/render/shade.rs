@@ -18,6 +18,7 @@ use crate::light::exact::ExactLight;
 use crate::raster::{Pool, QuadBlock, QuadPair};
 use crate::scene::Scene;
 use crate::settings::{Lighting, Settings};
+use crate::shell::Outlined;
 use crate::simd::PixelLanes;
 use glam::Vec3;
 use std::ops::Range;
@@ -45,6 +46,8 @@ pub(crate) struct Shader<'a> {
     exact: Option<ExactLight<'a>>,
     /// Where rays end on curved meshes; `None` where all reliefs are taken for flat.
     outlines: Option<&'a Outlines<'a>>,
+    /// The meshes that throw the shadow of their relief.
+    pub(super) outlined: Option<&'a Outlined<'a>>,
     /// Whether any mesh has colours of its own.
     has_tints: bool,
     pool: &'a Pool<ShadeScratch>,
@@ -72,7 +75,9 @@ impl<'a> Shader<'a> {
         let traits = settings.filter.traits();
         let is_exact = settings.lighting == Lighting::Lit
             && traits.samples.is_some_and(|samples| samples.is_exact);
-        let exact = is_exact.then(|| ExactLight { scene, occluders: prepared.occluders(scene) });
+        let outlined = outlines.and_then(Outlines::outlined);
+        let occluders = || prepared.occluders(scene);
+        let exact = is_exact.then(|| ExactLight { scene, occluders: occluders(), outlined });
         let samples = traits.samples.map(Samples::offsets);
         Self {
             scene,
@@ -82,6 +87,7 @@ impl<'a> Shader<'a> {
             samples,
             exact,
             outlines,
+            outlined,
             has_tints: scene.meshes.iter().any(|mesh| !mesh.colors.is_empty()),
             pool,
             num_texels: Default::default(),

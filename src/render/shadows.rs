@@ -21,18 +21,31 @@ use crate::light::exact::{Occluders, Receiver};
 use crate::light::{Disc, Vectors, cross};
 use crate::raster::QuadBlock;
 use crate::scene::{Light, Scene};
-use crate::simd::{PixelLanes, bits_mask};
+use crate::shell::{Outlined, ViewRay};
+use crate::simd::{PixelLanes, bits_mask, set_bits};
 use glam::Vec3;
 
 /// A sun, and the triangles that may hide it from a block.
-pub(super) struct Hidden {
+pub(super) struct Hidden<'a> {
     /// To each of [`RAYS`] points of its disc, unit directions.
     directions: Vec<Vec3>,
-    /// From the block's middle.
+    /// The block's middle.
+    middle: Vec3,
+    /// From there; those at outlines come last.
     triangles: Vec<[Vec3; 3]>,
     /// Two axes across the light, and how far each triangle reaches along them, widened by the disc.
     across: [Vec3; 2],
-    outlines: Vec<[[f32; 2]; 2]>,
+    extents: Vec<[[f32; 2]; 2]>,
+    /// The triangles whose relief light may pass.
+    outlines: Option<Passed<'a>>,
+}
+
+/// Triangles at outlines, as the sun sees them: where light passes one, its relief is asked.
+struct Passed<'a> {
+    outlined: &'a Outlined<'a>,
+    /// Their number among all that may hide the sun, and their names.
+    first: usize,
+    names: Vec<[u32; 2]>,
 }
 
 impl Shader<'_> {
@@ -48,7 +61,7 @@ impl Shader<'_> {
     ) {
         let [sky, suns @ ..] = lit.apart else { return };
         let occluders = self.prepared.occluders(self.scene);
-        let hidden = hidden_suns(self.scene, occluders, (ground, lit), block);
+        let hidden = hidden_suns(self.scene, (occluders, self.outlined), (ground, lit), block);
         let open_sky = lit.open_sky.and_then(|sky| sky.of_block(block));
         if hidden.is_none() && open_sky.is_none() {
             return;
@@ -89,7 +102,7 @@ pub(super) fn edges(alike: [u8; 2], covered: u8) -> u8 {
 /// pair. `None` where nothing is in the way.
 fn hidden_suns(
     scene: &Scene,
-    occluders: &Occluders,
+    all: (&Occluders, Option<&Outlined>),
     (ground, lit): (&Ground, &LitPiece),
     block: &QuadBlock,
 ) -> Option<Vec<Vec<PixelLanes>>> {
@@ -104,30 +117,40 @@ fn hidden_suns(
         .flat_map(|(points, pair)| pair.covered().map(move |lane| of_lane(&points.relief, lane)));
     let polygon = of_lane(&points.first()?.polygon, 0);
     let receiver = Receiver::new(relief, lit.normal, polygon)?;
-    let suns = between(scene, occluders, &receiver)?;
-    let of_sun = |sun: &Hidden| points.iter().map(|p| sun.share(p, receiver.middle)).collect();
+    let discs = scene.lights.iter().filter_map(Disc::of);
+    let suns: Vec<_> = discs.map(|disc| Hidden::new(all, &receiver, &disc)).collect();
+    if suns.iter().all(|sun| sun.triangles.is_empty()) {
+        return None;
+    }
+    let of_sun = |sun: &Hidden| points.iter().map(|places| sun.share(places)).collect();
     Some(suns.iter().map(of_sun).collect())
 }
 
-/// The triangles that may hide each of the suns from a receiver; `None` if there are none.
-fn between(scene: &Scene, occluders: &Occluders, receiver: &Receiver) -> Option<Vec<Hidden>> {
-    let suns: Vec<_> = scene
-        .lights
-        .iter()
-        .filter_map(|light| {
-            let disc = Disc::of(light)?;
-            let triangles = occluders.between(receiver, &disc);
-            Some(Hidden::new(&disc, triangles))
-        })
-        .collect();
-    suns.iter().any(|sun| !sun.triangles.is_empty()).then_some(suns)
-}
-
-impl Hidden {
-    /// Of a sun's disc and the triangles that may hide it, from a block's middle.
-    pub(super) fn new(disc: &Disc, triangles: Vec<[Vec3; 3]>) -> Self {
+impl<'a> Hidden<'a> {
+    /// Of a sun's disc and what may hide it from a receiver.
+    pub(super) fn new(
+        (occluders, outlined): (&Occluders, Option<&'a Outlined<'a>>),
+        receiver: &Receiver,
+        disc: &Disc,
+    ) -> Self {
         let across = <[Vec3; 2]>::from(disc.to_middle.any_orthonormal_pair());
-        let outline = |triangle: &[Vec3; 3]| {
+        let (mut triangles, mut names) = (Vec::new(), Vec::new());
+        let ball = (receiver.middle, receiver.radius());
+        let mut passed = Vec::new();
+        for (triangle, name) in occluders.between(receiver, disc) {
+            let way = (disc.to_middle, disc.radius);
+            if outlined.is_some_and(|all| all.may_let_pass(name, way, ball)) {
+                passed.push(triangle);
+                names.push(name);
+            } else {
+                triangles.push(triangle);
+            }
+        }
+        let first = triangles.len();
+        triangles.append(&mut passed);
+        let outlines = outlined.filter(|_| !names.is_empty());
+        let outlines = outlines.map(|outlined| Passed { outlined, first, names });
+        let extent = |triangle: &[Vec3; 3]| {
             // The farther a triangle is, the farther apart are the rays to all of the disc.
             let far = triangle.iter().fold(0.0_f32, |far, corner| far.max(corner.length()));
             let more = far * disc.radius;
@@ -136,20 +159,21 @@ impl Hidden {
                 [a.min(b).min(c) - more, a.max(b).max(c) + more]
             })
         };
-        let outlines = triangles.iter().map(outline).collect();
-        Self { directions: disc.points(RAYS).collect(), across, triangles, outlines }
+        let extents = triangles.iter().map(extent).collect();
+        let (directions, middle) = (disc.points(RAYS).collect(), receiver.middle);
+        Self { directions, middle, across, triangles, extents, outlines }
     }
 
     /// The part of the sun that pixels do not see.
-    pub(super) fn share(&self, places: &Places, middle: Vec3) -> PixelLanes {
+    pub(super) fn share(&self, places: &Places) -> PixelLanes {
         if self.triangles.is_empty() {
             return PixelLanes::ZERO;
         }
-        let near = self.near(places, middle);
+        let near = self.near(places);
         if near.is_empty() {
             return PixelLanes::ZERO;
         }
-        let hidden = |sum, ray| sum + self.is_hidden(&near, places, middle, ray);
+        let hidden = |sum, ray| sum + self.is_hidden(&near, places, ray);
         let count = FIRST.into_iter().fold(PixelLanes::ZERO, hidden);
         let most = FIRST.len() as f32;
         let is = |num: f32| count.simd_eq(PixelLanes::splat(num)).to_bitmask() as u8;
@@ -161,37 +185,48 @@ impl Hidden {
         bits_mask(edges).select(all * (1.0 / RAYS as f32), count * (1.0 / most))
     }
 
-    /// The triangles that cover a pixel of a pair as the sun sees them.
-    fn near(&self, places: &Places, middle: Vec3) -> Vec<&[Vec3; 3]> {
-        let ranges = self.across.map(|axis| places.range(middle, axis));
-        let is_near = |outline: &[[f32; 2]; 2]| {
-            outline.iter().zip(&ranges).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1])
+    /// The triangles that cover a pixel of a pair as the sun sees them, by their numbers.
+    fn near(&self, places: &Places) -> Vec<usize> {
+        let ranges = self.across.map(|axis| places.range(self.middle, axis));
+        let is_near = |extent: &[[f32; 2]; 2]| {
+            extent.iter().zip(&ranges).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1])
         };
-        let all = self.triangles.iter().zip(&self.outlines);
-        all.filter(|(_, outline)| is_near(outline)).map(|(triangle, _)| triangle).collect()
+        let all = self.extents.iter().enumerate();
+        all.filter(|(_, extent)| is_near(extent)).map(|(i, _)| i).collect()
     }
 
     /// 1 where a triangle hides a point of the sun, else 0.
-    fn is_hidden(
-        &self,
-        triangles: &[&[Vec3; 3]],
-        places: &Places,
-        middle: Vec3,
-        ray: usize,
-    ) -> PixelLanes {
+    fn is_hidden(&self, near: &[usize], places: &Places, ray: usize) -> PixelLanes {
         // Over the disc they go in another order than over the pixel, so that no part of the one goes
         // with a part of the other.
         let direction = self.directions[ray * 7 % RAYS];
-        let from = places.start(ray);
-        let from = [0, 1, 2].map(|i| from[i] - middle[i]);
+        let start = places.start(ray);
+        let from = [0, 1, 2].map(|i| start[i] - self.middle[i]);
         let mut hits = PixelLanes::ZERO;
-        for triangle in triangles {
-            hits |= passes(&from, direction, triangle, places.reach);
+        for &i in near {
+            let mut passing = passes(&from, direction, &self.triangles[i], places.reach);
+            if let Some(outlines) = self.outlines.as_ref().filter(|o| i >= o.first) {
+                let open = (passing & !hits).to_bitmask() as u8 & places.covered;
+                passing = outlines.stopped(i, (&start, direction), open);
+            }
+            hits |= passing;
             if hits.all() {
                 break;
             }
         }
         hits.select(PixelLanes::ONE, PixelLanes::ZERO)
+    }
+}
+
+impl Passed<'_> {
+    /// Those of picked lanes whose rays through a triangle, by its number, are stopped by its relief.
+    fn stopped(&self, i: usize, (start, direction): (&Vectors, Vec3), lanes: u8) -> PixelLanes {
+        let (name, direction) = (self.names[i - self.first], direction.as_dvec3());
+        let is_stopped = |lane: &usize| {
+            let ray = ViewRay { from: of_lane(start, *lane).as_dvec3(), direction };
+            self.outlined.hides(name, &ray, f64::INFINITY)
+        };
+        bits_mask(set_bits(lanes).filter(is_stopped).fold(0, |bits, lane| bits | 1 << lane))
     }
 }
 

@@ -18,7 +18,7 @@ const MOST_TRIANGLES: usize = 4096;
 /// How much farther around rays others are taken to go: prisms are narrower the deeper.
 const MARGIN: f64 = 1.25;
 
-/// A ray from the eye.
+/// A ray from the eye, or between a place and a light.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewRay {
     /// Where it begins.

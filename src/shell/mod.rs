@@ -19,9 +19,11 @@ mod course;
 mod curvature;
 mod follow;
 mod neighbors;
+mod outlined;
 mod prism;
 mod prisms;
 
 pub use course::Course;
 pub use follow::{Met, ReliefHit, ViewRay, Width};
+pub use outlined::Outlined;
 pub use prisms::{Passable, Shell, is_seen_from_behind};

@@ -77,6 +77,18 @@ impl Shell {
         may_be_passed.then(|| Passable { facing, cosine: limit.sqrt() })
     }
 
+    /// The square of the cosine between normal and ray below which a ray that sees the front of a triangle
+    /// may pass the relief there; 0 where none does.
+    pub(super) fn front_limit(&self, triangle: u32) -> f32 {
+        self.limits[triangle as usize].squares[0]
+    }
+
+    /// How deep the relief is below a triangle, at most, in the world.
+    pub(super) fn depth(&self, mesh: &Mesh, triangle: u32) -> f32 {
+        let lengths = mesh.triangles[triangle as usize].map(|i| self.offsets[i as usize].length());
+        lengths[0].max(lengths[1]).max(lengths[2])
+    }
+
     /// What a distance in the world is, at a vertex, as a depth and in repeats along u and v.
     pub(super) fn around(&self, mesh: &Mesh, vertex: usize, distance: f64) -> (f64, [f64; 2]) {
         let [u, v] = mesh.tangents[vertex].map(|tangent| tangent.as_dvec3());

@@ -80,6 +80,11 @@ impl Receiver {
         Some(Self { middle, half, normal, top, own: Some(own) })
     }
 
+    /// How far from its middle its points are, at most.
+    pub fn radius(&self) -> f32 {
+        self.half.length()
+    }
+
     /// Whether something in a box, by its middle and half its sides from the receiver's middle, may
     /// hide a part of a disc from a part of the receiver: a ray from the one to the other's middle
     /// passes a box that is larger by both.
@@ -115,22 +120,23 @@ impl Occluders {
         };
         self.any(
             |node| may(node.min, node.max, true),
-            |[a, b, c]| {
+            |_, [a, b, c]| {
                 let is_front = (point - *a).dot((*b - *a).cross(*c - *a)) < 0.0;
                 may(a.min(*b).min(*c), a.max(*b).max(*c), is_front)
             },
         )
     }
 
-    /// The triangles that may hide a part of a disc from a part of a receiver, from its middle.
-    pub fn between(&self, receiver: &Receiver, disc: &Disc) -> Vec<[Vec3; 3]> {
+    /// The triangles that may hide a part of a disc from a part of a receiver, from its middle, each with
+    /// the indices of its mesh and in it.
+    pub fn between(&self, receiver: &Receiver, disc: &Disc) -> Vec<([Vec3; 3], [u32; 2])> {
         let mut found = Vec::new();
         self.any(
             |node| {
                 let middle = (node.min + node.max) * 0.5 - receiver.middle;
                 receiver.may_be_hidden_by(disc, middle, (node.max - node.min) * 0.5)
             },
-            |triangle| {
+            |i, triangle| {
                 let [a, b, c] = triangle.map(|corner| corner - receiver.middle);
                 let (min, max) = (a.min(b).min(c), a.max(b).max(c));
                 let height = [a, b, c].map(|corner| receiver.normal.dot(corner));
@@ -144,7 +150,7 @@ impl Occluders {
                     && !receiver.own.is_some_and(|own| own.has(disc, &[a, b, c]))
                     && receiver.may_be_hidden_by(disc, (min + max) * 0.5, (max - min) * 0.5)
                 {
-                    found.push([a, b, c]);
+                    found.push(([a, b, c], self.name(i)));
                 }
                 false
             },

@@ -6,6 +6,7 @@
 
 use super::holes;
 use crate::scene::Scene;
+use crate::shell::{Outlined, ViewRay};
 use glam::{DVec3, Vec3};
 
 /// Most triangles of a leaf: fewer make more boxes than they save.
@@ -33,6 +34,8 @@ pub struct LightRay {
 pub struct Occluders {
     nodes: Vec<Node>,
     triangles: Vec<[Vec3; 3]>,
+    /// Of each triangle, the indices of its mesh and in it.
+    names: Vec<[u32; 2]>,
 }
 
 /// A box around triangles. The first child of an inner node is the next one.
@@ -46,46 +49,51 @@ pub(super) struct Node {
     num: u32,
 }
 
+/// A triangle with its name.
+type Named = ([Vec3; 3], [u32; 2]);
+
+/// Makes the node of triangles, whose first one is the one at `first` of all, and all below it.
+fn split(nodes: &mut Vec<Node>, triangles: &mut [Named], first: usize) {
+    let corners = triangles.iter().flat_map(|(corners, _)| corners);
+    let (min, max) = corners
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| (min.min(*p), max.max(*p)));
+    let (node, num) = (nodes.len(), triangles.len());
+    if num <= LEAF {
+        nodes.push(Node { min, max, at: first as u32, num: num as u32 });
+        return;
+    }
+    // Halved by number, so the tree is never deep. Equal middles may change places, but always
+    // in the same way.
+    let axis = (max - min).max_position();
+    let middle = |(t, _): &Named| {
+        t[0][axis].min(t[1][axis]).min(t[2][axis]) + t[0][axis].max(t[1][axis]).max(t[2][axis])
+    };
+    triangles.select_nth_unstable_by(num / 2, |a, b| middle(a).total_cmp(&middle(b)));
+    nodes.push(Node { min, max, at: 0, num: 0 });
+    let (left, right) = triangles.split_at_mut(num / 2);
+    split(nodes, left, first);
+    nodes[node].at = nodes.len() as u32;
+    split(nodes, right, first + num / 2);
+}
+
 impl Occluders {
     /// Of all meshes of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let triangles = scene.meshes.iter().flat_map(|mesh| {
+        let named = scene.meshes.iter().zip(0..).flat_map(|(mesh, name)| {
             let whole = || mesh.triangles.iter().map(|t| t.map(|i| mesh.positions[i as usize]));
-            match scene.cut_out(mesh) {
+            let all = match scene.cut_out(mesh) {
                 Some(cut_out) => holes::without(mesh, cut_out),
-                None => whole().collect(),
-            }
+                None => whole().zip(0..).collect(),
+            };
+            all.into_iter().map(move |(triangle, i)| (triangle, [name, i]))
         });
-        let mut occluders = Self { nodes: Vec::new(), triangles: triangles.collect() };
-        if !occluders.triangles.is_empty() {
-            occluders.split(0, occluders.triangles.len());
+        let mut named: Vec<Named> = named.collect();
+        let mut nodes = Vec::new();
+        if !named.is_empty() {
+            split(&mut nodes, &mut named, 0);
         }
-        occluders
-    }
-
-    /// Makes the node of a range of triangles, and all below it.
-    fn split(&mut self, first: usize, end: usize) {
-        let triangles = &mut self.triangles[first..end];
-        let corners = triangles.iter().flatten();
-        let (min, max) = corners
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| (min.min(*p), max.max(*p)));
-        let node = self.nodes.len();
-        let num = end - first;
-        if num <= LEAF {
-            self.nodes.push(Node { min, max, at: first as u32, num: num as u32 });
-            return;
-        }
-        // Halved by number, so the tree is never deep. Equal middles may change places, but always
-        // in the same way.
-        let axis = (max - min).max_position();
-        let middle = |t: &[Vec3; 3]| {
-            t[0][axis].min(t[1][axis]).min(t[2][axis]) + t[0][axis].max(t[1][axis]).max(t[2][axis])
-        };
-        triangles.select_nth_unstable_by(num / 2, |a, b| middle(a).total_cmp(&middle(b)));
-        self.nodes.push(Node { min, max, at: 0, num: 0 });
-        self.split(first, first + num / 2);
-        self.nodes[node].at = self.nodes.len() as u32;
-        self.split(first + num / 2, end);
+        let (triangles, names) = named.into_iter().unzip();
+        Self { nodes, triangles, names }
     }
 
     /// All triangles, in the tree's order.
@@ -93,12 +101,21 @@ impl Occluders {
         &self.triangles
     }
 
-    /// Whether a triangle lies between a point and its light.
-    pub fn hide(&self, ray: &LightRay) -> bool {
+    /// Whether a triangle lies between a point and its light; of meshes with outlines, if given, their
+    /// relief.
+    pub fn hide(&self, ray: &LightRay, outlined: Option<&Outlined>) -> bool {
         // Along an axis that the ray does not move along, it is within a slab or never.
         let inverse = ray.direction.to_array().map(|d| if d == 0.0 { 1e300 } else { 1.0 / d });
         let inverse = DVec3::from_array(inverse);
-        self.any(|node| node.is_on(ray, inverse), |triangle| ray.is_hidden_by(triangle))
+        let LightRay { from, direction, distance, .. } = *ray;
+        let way = ViewRay { from, direction };
+        self.any(
+            |node| node.is_on(ray, inverse),
+            |i, triangle| {
+                ray.is_hidden_by(triangle)
+                    && outlined.is_none_or(|all| all.hides(self.names[i], &way, distance))
+            },
+        )
     }
 
     /// Whether a triangle lies between a point in a relief and the sky in a direction; the point is
@@ -106,15 +123,20 @@ impl Occluders {
     pub fn hide_sky(&self, from: Vec3, direction: Vec3, (down, is_turned): (f32, bool)) -> bool {
         let (from, direction) = (from.as_dvec3(), direction.as_dvec3());
         let reach = f64::from(2.0 * down) + from.abs().max_element() * 1e-5;
-        self.hide(&LightRay { from, direction, distance: f64::INFINITY, reach, is_turned })
+        self.hide(&LightRay { from, direction, distance: f64::INFINITY, reach, is_turned }, None)
     }
 
-    /// Whether a triangle in boxes that are wanted is the one; none is looked at after it.
+    /// The indices of a triangle's mesh and in it.
+    pub(super) fn name(&self, i: usize) -> [u32; 2] {
+        self.names[i]
+    }
+
+    /// Whether a triangle in boxes that are wanted is the one, by its index; none is looked at after it.
     #[inline(always)]
     pub(super) fn any(
         &self,
         is_wanted: impl Fn(&Node) -> bool,
-        mut is_it: impl FnMut(&[Vec3; 3]) -> bool,
+        mut is_it: impl FnMut(usize, &[Vec3; 3]) -> bool,
     ) -> bool {
         // Halved by number, a tree of 2^32 triangles is not as deep.
         let mut left = [0; 64];
@@ -132,7 +154,8 @@ impl Occluders {
                 continue;
             }
             let first = node.at as usize;
-            if self.triangles[first..first + node.num as usize].iter().any(&mut is_it) {
+            let leaf = self.triangles[first..first + node.num as usize].iter();
+            if leaf.zip(first..).any(|(triangle, i)| is_it(i, triangle)) {
                 return true;
             }
         }
@@ -198,23 +221,23 @@ mod tests {
         let heights: Vec<f32> = (0..40).map(|i| i as f32 * 0.1).collect();
         let occluders = Occluders::new(&squares(&heights));
         let ray = up(0.95, 0.0);
-        assert!(occluders.hide(&ray));
-        assert!(occluders.hide(&LightRay { distance: 0.06, ..ray }));
+        assert!(occluders.hide(&ray, None));
+        assert!(occluders.hide(&LightRay { distance: 0.06, ..ray }, None));
         assert!(!occluders.hide(&LightRay { distance: 0.05, ..ray }), "the light is nearer");
-        assert!(!occluders.hide(&up(4.0, 0.0)), "all lie below");
+        assert!(!occluders.hide(&up(4.0, 0.0, None)), "all lie below");
         let aside = LightRay { from: DVec3::new(1.5, -1.0, 0.0), ..ray };
         assert!(!occluders.hide(&aside), "it passes beside them");
-        assert!(!Occluders::new(&squares(&[])).hide(&ray));
+        assert!(!Occluders::new(&squares(&[])).hide(&ray, None));
     }
 
     #[test]
     fn own_polygon_is_left_from_behind_and_not_from_the_front() {
         let occluders = Occluders::new(&squares(&[0.0]));
-        assert!(occluders.hide(&up(-0.1, 0.05)), "too deep to be its relief");
-        assert!(!occluders.hide(&up(-0.1, 0.11)));
-        assert!(occluders.hide(&LightRay { is_turned: true, ..up(-0.1, 0.11) }));
+        assert!(occluders.hide(&up(-0.1, 0.05, None)), "too deep to be its relief");
+        assert!(!occluders.hide(&up(-0.1, 0.11), None));
+        assert!(occluders.hide(&LightRay { is_turned: true, ..up(-0.1, 0.11) }, None));
         let down = |ray: LightRay| LightRay { direction: -ray.direction, ..ray };
-        assert!(occluders.hide(&down(up(0.1, 0.11))));
-        assert!(!occluders.hide(&LightRay { is_turned: true, ..down(up(0.1, 0.11)) }));
+        assert!(occluders.hide(&down(up(0.1, 0.11)), None));
+        assert!(!occluders.hide(&LightRay { is_turned: true, ..down(up(0.1, 0.11)) }, None));
     }
 }

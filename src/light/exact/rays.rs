@@ -7,6 +7,7 @@ use crate::light::surface_point::SurfacePoint;
 use crate::relief::{Climb, HeightField};
 use crate::scene::angle::cos_sin;
 use crate::scene::{Finish, Light, Scene};
+use crate::shell::Outlined;
 use glam::{DMat3, DVec3, Vec3};
 
 /// What rounding takes from a position, as a share of its numbers: they went through f32 planes.
@@ -19,6 +20,9 @@ pub struct ExactLight<'a> {
     pub scene: &'a Scene,
     /// The same scene's triangles.
     pub occluders: &'a Occluders,
+    /// Its meshes that throw the shadow of their relief; those of all others, and of all where this is
+    /// `None`, are those of their polygons.
+    pub outlined: Option<&'a Outlined<'a>>,
 }
 
 /// What a view ray met.
@@ -176,7 +180,8 @@ impl<'a> Ground<'a> {
             }
         }
         let (from, reach, is_turned) = (self.position, self.reach, self.is_turned);
-        !self.exact.occluders.hide(&LightRay { from, direction, distance, reach, is_turned })
+        let ray = LightRay { from, direction, distance, reach, is_turned };
+        !self.exact.occluders.hide(&ray, self.exact.outlined)
     }
 
     /// The direction to a point of a light, how far it is, and its intensity here.
