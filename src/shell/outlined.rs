@@ -1,17 +1,16 @@
-//! Light on its way past the outlines of meshes: what of it their polygons stop, and their relief does not.
+//! Light on its way past the outlines of meshes: what their polygons would stop and their relief does
+//! not.
 //!
 //! ```text
-//!        light          light          light
-//!          |              |              |
-//!      ____|___           |              |
-//!     /    o relief      _|__            |
-//!    / .--' '-.  \      / o  '.         _|__
-//!   | /        \  |    | / '-.         | | .-    the last one passes between the polygon and the
-//!                                      | |/      relief: where it meets the floor there is light
-//!      hidden             hidden         | seen
+//!   from a light   1      2      3
+//!                  |      |      |        1 goes so steeply through the polygons that any relief
+//!        polygons .-------|-.    |          stops it: it is not followed
+//!              .' | .---. |  '.  |        2 is followed, and meets the relief
+//!             /   o'     'o    \ |        3 is followed, comes out of the polygons again, and lights
+//!            |   / relief  \    ||          the floor
+//!             \ |           |   /|
+//!   ____________|___________|____|___ floor
 //! ```
-//!
-//! A ray that goes deep through the polygons is stopped by any relief, and few rays are followed.
 
 use super::follow::{Met, ViewRay, Width};
 use super::prisms::Shell;

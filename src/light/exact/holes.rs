@@ -9,8 +9,8 @@ const MOST: u32 = 24;
 /// Most pieces of a mesh before holes are left out.
 const MOST_OF_MESH: usize = 1 << 20;
 
-/// The pieces of a mesh's triangles that are there, each with the triangle's index: of those that cover many texels, as many as there
-/// are of these.
+/// The pieces of a mesh's triangles that are there, each with the triangle's index: of those that cover
+/// many texels, as many as there are of these.
 pub(super) fn without(mesh: &Mesh, cut_out: &CutOut) -> Vec<([Vec3; 3], u32)> {
     let size = cut_out.opacity.size().map(|side| side as f32);
     // A triangle has n^2 pieces.

@@ -216,28 +216,32 @@ mod tests {
         LightRay { from, direction, distance: f64::INFINITY, reach, is_turned: false }
     }
 
+    fn hide(occluders: &Occluders, ray: &LightRay) -> bool {
+        occluders.hide(ray, None)
+    }
+
     #[test]
     fn what_lies_between_hides() {
         let heights: Vec<f32> = (0..40).map(|i| i as f32 * 0.1).collect();
         let occluders = Occluders::new(&squares(&heights));
         let ray = up(0.95, 0.0);
-        assert!(occluders.hide(&ray, None));
-        assert!(occluders.hide(&LightRay { distance: 0.06, ..ray }, None));
-        assert!(!occluders.hide(&LightRay { distance: 0.05, ..ray }), "the light is nearer");
-        assert!(!occluders.hide(&up(4.0, 0.0, None)), "all lie below");
+        assert!(hide(&occluders, &ray));
+        assert!(hide(&occluders, &LightRay { distance: 0.06, ..ray }));
+        assert!(!hide(&occluders, &LightRay { distance: 0.05, ..ray }), "the light is nearer");
+        assert!(!hide(&occluders, &up(4.0, 0.0)), "all lie below");
         let aside = LightRay { from: DVec3::new(1.5, -1.0, 0.0), ..ray };
-        assert!(!occluders.hide(&aside), "it passes beside them");
-        assert!(!Occluders::new(&squares(&[])).hide(&ray, None));
+        assert!(!hide(&occluders, &aside), "it passes beside them");
+        assert!(!hide(&Occluders::new(&squares(&[])), &ray));
     }
 
     #[test]
     fn own_polygon_is_left_from_behind_and_not_from_the_front() {
         let occluders = Occluders::new(&squares(&[0.0]));
-        assert!(occluders.hide(&up(-0.1, 0.05, None)), "too deep to be its relief");
-        assert!(!occluders.hide(&up(-0.1, 0.11), None));
-        assert!(occluders.hide(&LightRay { is_turned: true, ..up(-0.1, 0.11) }, None));
+        assert!(hide(&occluders, &up(-0.1, 0.05)), "too deep to be its relief");
+        assert!(!hide(&occluders, &up(-0.1, 0.11)));
+        assert!(hide(&occluders, &LightRay { is_turned: true, ..up(-0.1, 0.11) }));
         let down = |ray: LightRay| LightRay { direction: -ray.direction, ..ray };
-        assert!(occluders.hide(&down(up(0.1, 0.11)), None));
-        assert!(!occluders.hide(&LightRay { is_turned: true, ..down(up(0.1, 0.11)) }, None));
+        assert!(hide(&occluders, &down(up(0.1, 0.11))));
+        assert!(!hide(&occluders, &LightRay { is_turned: true, ..down(up(0.1, 0.11)) }));
     }
 }
