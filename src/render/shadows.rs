@@ -3,7 +3,8 @@
 //! For a block of pixels the triangles between it and a sun are listed once: most blocks have none.
 //! Where there are some, each pixel sends rays from where its own view ray meets the *relief*, not
 //! the polygon, to points of the sun's disc, from places spread over the pixel. A few tell whether a
-//! pixel is all dark or all lit; only edges take the rest. Lanes are pixels.
+//! pixel is all dark or all lit; only edges take the rest. Lanes are pixels. A triangle at the outline of
+//! a relief, as the sun sees it, stops a ray only if its relief does, and is asked last.
 //!
 //! ```text
 //!      sun's disc  * * *

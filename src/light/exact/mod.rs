@@ -11,7 +11,8 @@
 //!      \________p
 //! ```
 //!
-//! The place is the relief's, not the polygon's. Points on discs and in the sky are those of a
+//! The place is the relief's, not the polygon's; so is the shadow of a mesh with an outline
+//! ([`Outlined`](crate::shell::Outlined)). Points on discs and in the sky are those of a
 //! [`Sequence`], which is the same whatever lights there are: lights add up.
 //!
 //! Of what comes from the sky along the reflected ray the surface shows the share `w = F G2 / G1`, and
