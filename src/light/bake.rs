@@ -61,8 +61,17 @@ impl<'a> BakedLight<'a> {
         Self { surface, shares, sky, suns }
     }
 
-    /// The surface in some of the light.
-    pub(crate) fn surface(&self, part: Part, normals: Normals) -> Surface {
+    /// The surface in some of the light; it needs no normals any more.
+    pub fn surface(&self, part: Part) -> Surface {
+        self.colored(part, Normals::Dropped)
+    }
+
+    /// The same with normals, for what is seen through what lies above it.
+    pub fn layer(&self, part: Part) -> Surface {
+        self.colored(part, Normals::Kept)
+    }
+
+    fn colored(&self, part: Part, normals: Normals) -> Surface {
         self.surface.with_colors(normals, |x, y, albedo| {
             let light = self.at(x, y, |of| part == Part::All || part == of);
             std::array::from_fn(|c| albedo[c] * light[c])

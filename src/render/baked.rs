@@ -14,7 +14,6 @@ use crate::light::exact::Occluders;
 use crate::light::reflection::Reflectance;
 use crate::light::{BakedLight, Part, SunlitTexels, TextureFrame};
 use crate::scene::{Finish, Material, Mesh, Scene};
-use crate::texture::Normals;
 use glam::Vec3;
 
 /// Most texels of all baked surfaces of a scene together, some hundred MiB. Pieces beyond, in the
@@ -227,9 +226,8 @@ impl Piece {
         let layer = layer(&frame, material, unlit, reflectance);
         let lit = |part: Part, near: Vec<SunlitTexels>| {
             let lit = match &layer {
-                Some(layer) => unlit.glossy(light.surface(part, Normals::Kept), layer.clone()),
-                // It needs no normals any more.
-                None => unlit.recolored(light.surface(part, Normals::Dropped)),
+                Some(layer) => unlit.glossy(light.layer(part), layer.clone()),
+                None => unlit.recolored(light.surface(part)),
             };
             lit.seen_near(near)
         };

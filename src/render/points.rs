@@ -60,20 +60,19 @@ impl Shader<'_> {
         }
     }
 
-    /// Adds what points show of a flat piece.
+    /// What points show of a flat piece's pairs.
     pub(super) fn shine(
         &self,
         ground: &Ground,
         hidden: &HiddenLights,
         block: &QuadBlock,
         scratch: &mut ShadeScratch,
-        colors: &mut [[PixelLanes; 3]],
-    ) {
+    ) -> Vec<[PixelLanes; 3]> {
         let points = self.scene.lights.iter().take(64).enumerate();
         let points = points.filter(|(_, light)| matches!(light, Light::Point { .. }));
         let lights = points.fold(0_u64, |lights, (i, _)| lights | 1 << i);
         let unlit = Ground { prepared: ground.diffuse, baked: None, ..*ground };
-        let mut shown = Vec::with_capacity(colors.len());
+        let mut shown = Vec::with_capacity(block.num_pairs());
         let has_relief = unlit.prepared.field().is_some() && unlit.prepared.surface().has_normals();
         // More lights than bits are lit place by place.
         if has_relief && self.scene.lights.len() <= 64 {
@@ -85,9 +84,7 @@ impl Shader<'_> {
                 self.place_by_place(&unlit, hidden, (block, pairs), scratch, &mut shown);
             }
         }
-        for (color, shown) in colors.iter_mut().zip(&shown) {
-            (0..3).for_each(|c| color[c] += shown[c]);
-        }
+        shown
     }
 
     /// Appends what pairs show of points where there is no relief.

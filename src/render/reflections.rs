@@ -28,28 +28,37 @@ use glam::Vec3;
 use std::ops::Range;
 
 impl Shader<'_> {
-    /// Adds to the colours of a block's pairs what is not baked.
+    /// Adds to the colours of a block's pairs what is not baked. `below` is what else they show of their
+    /// diffuse layer, if anything.
     pub(super) fn reflect(
         &self,
-        ground: &Ground,
-        hidden: &HiddenLights,
+        (ground, hidden): (&Ground, &HiddenLights),
         block: &QuadBlock,
         scratch: &mut ShadeScratch,
-        colors: &mut [[PixelLanes; 3]],
+        (colors, mut below): (&mut [[PixelLanes; 3]], Vec<[PixelLanes; 3]>),
     ) {
         if ground.material.is_matte() {
             let emissive = ground.emissive().to_array();
-            for color in colors {
+            for color in colors.iter_mut() {
                 color.iter_mut().zip(emissive).for_each(|(channel, more)| *channel += more);
             }
-            return;
+            return add(colors, &below);
+        }
+        below.resize(colors.len(), [PixelLanes::ZERO; 3]);
+        // What the horizon shows of a layer's texels is seen through what lies above each of them already.
+        let is_layered =
+            matches!(self.settings.filter, Filter::Horizon(_)) && ground.prepared.shows_eye();
+        if !is_layered {
+            add(&mut below, colors);
+            colors.fill([PixelLanes::ZERO; 3]);
         }
         let swept = self.swept_gloss(ground, hidden, block, scratch);
         let swept = swept.as_ref();
         for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {
             let pairs = first..block.num_pairs().min(first + PAIRS_AT_ONCE);
             let colors = &mut colors[pairs.clone()];
-            self.reflect_pairs((ground, hidden, swept), (block, pairs), scratch, colors);
+            let below = &below[pairs.clone()];
+            self.reflect_pairs((ground, hidden, swept), (block, pairs), scratch, (colors, below));
         }
     }
 
@@ -58,7 +67,7 @@ impl Shader<'_> {
         (ground, hidden, swept): (&Ground, &HiddenLights, Option<&SweptGloss>),
         (block, pairs): (&QuadBlock, Range<usize>),
         scratch: &mut ShadeScratch,
-        colors: &mut [[PixelLanes; 3]],
+        (colors, below): (&mut [[PixelLanes; 3]], &[[PixelLanes; 3]]),
     ) {
         let ShadeScratch { filter, footprints, lights, filtered, .. } = scratch;
         let surface = ground.unlit.surface();
@@ -85,21 +94,18 @@ impl Shader<'_> {
         // With a texture of metal the colours are those of the diffuse layer already.
         let has_layer = ground.material.maps.metallic.is_some();
         let dielectric = if has_layer { 1.0 } else { 1.0 - ground.material.metallic };
-        // What the layer's texels show is seen through what lies above each of them already.
-        let is_layered =
-            matches!(self.settings.filter, Filter::Horizon(_)) && ground.prepared.shows_eye();
         // The lights come in the order in which they were listed.
         let mut each = lights.iter().zip(places).enumerate();
-        for (color, pixels) in colors.iter_mut().zip(&*footprints) {
+        for ((color, below), pixels) in colors.iter_mut().zip(below).zip(&*footprints) {
             let mut lit = [Vec3::ZERO; 8];
-            let diffuse = color.map(|channel| channel.to_array());
+            let [shown, below] = [&*color, below].map(|of| of.map(PixelLanes::to_array));
+            let lane_of = |of: &[[f32; 8]; 3], lane: usize| Vec3::from(of.map(|c| c[lane]));
             for (lane, (i, (lights, (finish, texel)))) in pixels.covered().zip(&mut each) {
                 let base = ground.color_of(surface, &texel);
                 let seen = seen.get(i).copied().unwrap_or_default();
                 let on_top = self.reflected((&finish, base), texel.normal.into(), lights, seen);
-                let diffuse = Vec3::from(diffuse.map(|channel| channel[lane]));
-                let passed = if is_layered { 1.0 } else { on_top.passed };
-                lit[lane] = diffuse * (passed * dielectric) + on_top.added;
+                let passed = lane_of(&below, lane) * (on_top.passed * dielectric);
+                lit[lane] = passed + lane_of(&shown, lane) * dielectric + on_top.added;
             }
             *color = in_lanes(&lit);
         }
@@ -146,5 +152,12 @@ impl Shader<'_> {
             }
         }
         sums
+    }
+}
+
+/// Adds colours to others.
+fn add(to: &mut [[PixelLanes; 3]], colors: &[[PixelLanes; 3]]) {
+    for (to, color) in to.iter_mut().zip(colors) {
+        (0..3).for_each(|c| to[c] += color[c]);
     }
 }

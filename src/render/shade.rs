@@ -139,18 +139,21 @@ impl<'a> Shader<'a> {
             self.textured(&ground, block, &mut scratch, colors);
         }
         let colors = &mut colors[start..];
+        // What points show of flat pieces is not seen through what lies above its colour yet.
+        let mut of_points = Vec::new();
         if let Some(lit) = ground.baked {
             self.shadow((&ground, &lit), block, &mut scratch, &mut hidden, colors);
             if self.prepared.has_points() {
                 self.hide_points((field, lit.normal), block, &mut hidden);
-                self.shine(&ground, &hidden, block, &mut scratch, colors);
+                of_points = self.shine(&ground, &hidden, block, &mut scratch);
             }
         }
         if self.has_tints && !is_glowing {
             tint(block.pairs(), colors);
+            tint(block.pairs(), &mut of_points);
         }
         if ground.baked.is_some() || ground.swept.is_some() {
-            self.reflect(&ground, &hidden, block, &mut scratch, colors);
+            self.reflect((&ground, &hidden), block, &mut scratch, (colors, of_points));
         }
         if let Some(glow) = ground.glow {
             self.glow(&ground, glow, block, &mut scratch, colors);

@@ -16,10 +16,10 @@ const MOST_LOSS: f32 = 0.02;
 /// Bricks under one 30 degrees high lose 0.18 on level 1 and show it as 9 dB next to the skyline.
 const MOST_SHARE_LOST: f32 = 0.1;
 
-/// The same of light that is kept at texels instead of made between them, which is all too bright: a floor under
-/// a sun 10 degrees high loses 0.04 and shows it as 2.4 dB next to the skyline, one at 30 degrees 0.02 and
-/// nothing.
-const MOST_SHARE_OF_EDGES: f32 = 0.03;
+/// Greatest share by which what is swept may be brighter or darker in the mean than light that is made between
+/// texels: a floor under a sun 10 degrees high is 0.02 too bright with light that is kept at them, and shows it as
+/// 2.4 dB next to the skyline.
+const MOST_BRIGHTER: f64 = 0.015;
 
 /// What the tables of a surface are swept on.
 #[derive(Clone, Debug)]
@@ -66,17 +66,16 @@ impl Source {
             views.par_iter().map(|view| source.seen(surface, size, *view)).collect()
         };
         let all = of(&best);
-        let shows_nearly_all = |source: &Self| {
-            of(source).iter().zip(&all).all(|(found, all)| {
-                let loss = square_difference(all, found).sqrt();
-                let seen = square_difference(all, &vec![[0.0; 3]; all.len()]).sqrt();
-                let share = match source.swept {
-                    Swept::Level(0) => MOST_SHARE_OF_EDGES,
-                    _ => MOST_SHARE_LOST,
-                };
-                loss < MOST_LOSS.min(share * seen)
-            })
+        let is_like = |all: &SeenImage, found: &SeenImage| {
+            let loss = square_difference(all, found).sqrt();
+            let seen = square_difference(all, &vec![[0.0; 3]; all.len()]).sqrt();
+            let [light, other] = [all, found].map(brightness);
+            let is_as_bright = (other - light).abs() <= MOST_BRIGHTER * light;
+            loss < MOST_LOSS.min(MOST_SHARE_LOST * seen)
+                && (best.swept != Swept::InSun || is_as_bright)
         };
+        let shows_nearly_all =
+            |source: &Self| all.iter().zip(of(source)).all(|(all, found)| is_like(all, &found));
         others.into_iter().find(shows_nearly_all).unwrap_or(best)
     }
 
@@ -114,6 +113,11 @@ impl Source {
             }
         }
     }
+}
+
+/// The sum of all that an image shows.
+fn brightness(image: &SeenImage) -> f64 {
+    image.iter().flatten().map(|c| f64::from(*c)).sum()
 }
 
 /// The sums of two images.

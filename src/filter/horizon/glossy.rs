@@ -52,7 +52,7 @@ impl<'a> PatchGloss<'a> {
 
     /// The unit direction to the eye on lines, where texels are seen so.
     #[inline(always)]
-    fn to_eye(&self, [xi, p]: [LineLanes; 2]) -> [LineLanes; 3] {
+    fn eye_at(&self, [xi, p]: [LineLanes; 2]) -> [LineLanes; 3] {
         let [xi, p] = [xi - self.middle[0], p - self.middle[1]];
         let [u, v] = self.to_eye.map(|way| way.at(xi, p));
         let up = LineLanes::ONE / (u * u + v * v + 1.0).sqrt();
@@ -115,7 +115,7 @@ impl Show<3> for PatchGloss<'_> {
         let color = mix3(&last.color, &next.color);
         let normal = mix3(&last.normal, &next.normal);
         let opening = mix3(&last.opening, &next.opening);
-        let to_eye = self.to_eye([next.seen_at[0], mix(last.seen_at[1], next.seen_at[1])]);
+        let to_eye = self.eye_at([next.seen_at[0], mix(last.seen_at[1], next.seen_at[1])]);
         let full = FULL_F32 * BETWEEN_SCALE;
         self.gloss.shown((color, full), [normal, opening, to_eye], (self.is_base, spread))
     }
@@ -157,7 +157,7 @@ impl<S: Show<3>> Show<3> for Layered<'_, S> {
         let mix = |a: LineLanes, b: LineLanes| a + (b - a) * middle;
         let (a, b) = (&last.1, &next.1);
         let normal = std::array::from_fn(|i| mix(a.normal[i], b.normal[i]));
-        let to_eye = self.gloss.to_eye([0, 1].map(|i| mix(a.seen_at[i], b.seen_at[i])));
+        let to_eye = self.gloss.eye_at([0, 1].map(|i| mix(a.seen_at[i], b.seen_at[i])));
         let colors = self.show.between([&last.0, &next.0], part);
         let directions = [normal, [LineLanes::ZERO; 3], to_eye];
         self.gloss.gloss.shown((colors, 1.0), directions, (true, LineLanes::ZERO))
