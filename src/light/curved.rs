@@ -1,7 +1,7 @@
 //! Lights as eight pixels of a curved surface see them.
 
 use super::disc::spiral;
-use super::sky_shares::SkyShares;
+use super::sky_shares::{Layer, SkyShares};
 use super::vectors::{Vectors, cross, dot, repeat_length};
 use crate::relief::finite;
 use crate::scene::Eye;
@@ -57,8 +57,17 @@ pub struct Curved<'a> {
     pub points: &'a [Vec3],
     /// The ways to each of them from the first vector, from the second, and so on.
     pub ways: &'a [Ways],
-    /// Where what is reflected is asked for, not diffuse light.
+    /// Of a glossy surface, what the eye makes of them.
     pub shine: Option<Shine<'a>>,
+}
+
+/// What a glossy surface shows.
+#[derive(Clone, Copy, Debug)]
+pub enum Sheen {
+    /// What it reflects.
+    Luster(Luster),
+    /// Its diffuse layer, through what lies above.
+    Layer(Layer),
 }
 
 /// How a surface reflects whose colours are what it does of light that comes straight.
@@ -74,11 +83,11 @@ pub struct Luster {
     pub sky: SkyShares,
 }
 
-/// What highlights depend on beside the lights.
+/// What that depends on beside the lights.
 #[derive(Clone, Copy, Debug)]
 pub struct Shine<'a> {
-    /// How the surface reflects.
-    pub luster: Luster,
+    /// What is shown.
+    pub sheen: Sheen,
     /// Unit directions to the eye from each vector of pixels: along u, along v, off the surface.
     pub to_eyes: &'a [Vectors],
 }

@@ -9,7 +9,7 @@ use super::beams::TextureFrame;
 use super::openings::Openings;
 use super::reflection::{LEAST_COSINE, alpha};
 use super::sky_lobe::SkyLobe;
-use super::sky_shares::SkyShares;
+use super::sky_shares::Layer;
 use super::vectors::dot;
 use crate::simd::Lanes;
 use glam::Vec3;
@@ -41,15 +41,6 @@ enum Shine {
     Sky(SkyLobe, f32),
     /// Nothing: colours are the diffuse layer's, which shows what is not reflected above it.
     Layer(Layer),
-}
-
-/// What reflects light above a diffuse layer.
-#[derive(Clone, Copy, Debug)]
-pub struct Layer {
-    /// How much it reflects of light from all around.
-    pub shares: SkyShares,
-    /// And of light that comes straight.
-    pub straight: f32,
 }
 
 impl Gloss {
@@ -138,17 +129,6 @@ impl Gloss {
     }
 }
 
-impl Layer {
-    /// The part of light from around that gets below it, to an eye in a direction.
-    #[inline(always)]
-    fn passed<L: Lanes>(&self, normal: [L; 3], to_eye: [L; 3]) -> L {
-        let inverse = L::splat(1.0) / dot(&normal, &normal).at_least(1e-6).sqrt();
-        let n_v = dot(&normal, &to_eye) * inverse;
-        let [x, y] = self.shares.at(n_v.at_least(LEAST_COSINE).at_most(1.0));
-        (L::splat(1.0) - x * L::splat(self.straight) - y).at_least(0.0)
-    }
-}
-
 /// Least `a^2` that is told from lengths, which are rounded.
 const LEAST_OWN: f32 = 1e-4;
 
@@ -202,7 +182,7 @@ pub(crate) fn lobes<L: Lanes>(normal: [L; 3], [to_light, to_eye]: [[L; 3]; 2], a
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::reflection::{Reflectance, lobe};
+    use crate::light::reflection::lobe;
     use crate::simd::PixelLanes;
 
     #[test]
@@ -222,28 +202,6 @@ mod tests {
             let found = lobes(splat(normal), [to_light, to_eye].map(splat), PixelLanes::splat(a));
             let found = found.to_array()[3];
             assert!((found - alone).abs() <= 2e-3 * alone + 1e-4, "{found} {alone}");
-        }
-    }
-
-    #[test]
-    fn what_is_reflected_does_not_get_below() {
-        let reflectance = Reflectance::new();
-        for roughness in [0.2, 0.5, 1.0] {
-            let (straight, grazing) = (0.04, 1.0);
-            let shares = SkyShares::new((roughness, grazing), &reflectance);
-            for i in 1..=20 {
-                let n_v = i as f32 / 20.0;
-                let to_eye = Vec3::new((1.0 - n_v * n_v).sqrt(), 0.0, n_v);
-                let [normal, to_eye] =
-                    [Vec3::Z * 0.7, to_eye].map(|v| v.to_array().map(PixelLanes::splat));
-                let passed = Layer { shares, straight }.passed(normal, to_eye).to_array()[0];
-                let [x, y] = reflectance.at(n_v, alpha(roughness));
-                let expected = 1.0 - straight * x - grazing * y;
-                assert!(
-                    (passed - expected).abs() < 0.03,
-                    "{roughness}, {n_v}: {passed} {expected}"
-                );
-            }
         }
     }
 

@@ -75,6 +75,26 @@ impl SkyShares {
     }
 }
 
+/// What reflects light above a diffuse layer.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer {
+    /// How much it reflects of light from all around.
+    pub shares: SkyShares,
+    /// And of light that comes straight.
+    pub straight: f32,
+}
+
+impl Layer {
+    /// The part of light from around that gets below it, to an eye in a direction.
+    #[inline(always)]
+    pub(crate) fn passed<L: Lanes>(&self, normal: [L; 3], to_eye: [L; 3]) -> L {
+        let inverse = L::splat(1.0) / dot(&normal, &normal).at_least(1e-6).sqrt();
+        let n_v = dot(&normal, &to_eye) * inverse;
+        let [x, y] = self.shares.at(n_v.at_least(LEAST_COSINE).at_most(1.0));
+        (L::splat(1.0) - x * L::splat(self.straight) - y).at_least(0.0)
+    }
+}
+
 /// `x` and `y` of [`SkyShares`]: least squares over the cosine to the eye, within 0.02.
 fn shares(alpha: f32, reflectance: &Reflectance) -> [[f32; 4]; 2] {
     const POINTS: usize = 32;
@@ -94,4 +114,33 @@ fn shares(alpha: f32, reflectance: &Reflectance) -> [[f32; 4]; 2] {
     // No surface reflects more than all.
     let most = (0..=POINTS).map(|i| (found[0] + found[1]).dot(basis(i))).fold(1.0, f64::max);
     found.map(|terms| (terms / most).as_vec4().to_array())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::PixelLanes;
+    use glam::Vec3;
+
+    #[test]
+    fn what_is_reflected_does_not_get_below() {
+        let reflectance = Reflectance::new();
+        for roughness in [0.2, 0.5, 1.0] {
+            let (straight, grazing) = (0.04, 1.0);
+            let shares = SkyShares::new((roughness, grazing), &reflectance);
+            for i in 1..=20 {
+                let n_v = i as f32 / 20.0;
+                let to_eye = Vec3::new((1.0 - n_v * n_v).sqrt(), 0.0, n_v);
+                let [normal, to_eye] =
+                    [Vec3::Z * 0.7, to_eye].map(|v| v.to_array().map(PixelLanes::splat));
+                let passed = Layer { shares, straight }.passed(normal, to_eye).to_array()[0];
+                let [x, y] = reflectance.at(n_v, alpha(roughness));
+                let expected = 1.0 - straight * x - grazing * y;
+                assert!(
+                    (passed - expected).abs() < 0.03,
+                    "{roughness}, {n_v}: {passed} {expected}"
+                );
+            }
+        }
+    }
 }

@@ -5,14 +5,14 @@
 //! surface unlit. Pieces of one material that lie in the same directions, such as all triangles of
 //! a floor, share one. Curved meshes are lit place by place.
 
-use super::gloss::{PieceGloss, gloss, layer};
+use super::gloss::{PieceGloss, gloss};
 use super::ground::LitPiece;
-use super::mapped::texel_finish;
+use super::mapped::{layer, texel_finish};
 use super::open_sky::{Facing, OpenSky, Plane};
 use crate::filter::Prepared;
 use crate::light::exact::Occluders;
 use crate::light::reflection::Reflectance;
-use crate::light::{BakedLight, Part, SunlitTexels, TextureFrame};
+use crate::light::{BakedLight, Gloss, Part, SunlitTexels, TextureFrame};
 use crate::scene::{Finish, Material, Mesh, Scene};
 use glam::Vec3;
 
@@ -223,7 +223,11 @@ impl Piece {
         let (surface, lights) = (unlit.shared_surface(), (&*scene.lights, &scene.sky));
         let light = BakedLight::new(surface, &frame, lights, shares);
         let near = light.near();
-        let layer = layer(&frame, material, unlit, reflectance);
+        // A layer under what reflects light is seen through that.
+        let layer = (!material.is_matte() && unlit.has_relief()).then(|| {
+            let layer = layer(material, unlit, reflectance);
+            Gloss::of_layer(&frame, layer, unlit.surface().relief_depth())
+        });
         let lit = |part: Part, near: Vec<SunlitTexels>| {
             let lit = match &layer {
                 Some(layer) => unlit.glossy(light.layer(part), layer.clone()),

@@ -4,7 +4,7 @@ use super::ground::{Ground, Swept};
 use super::prepared::PreparedScene;
 use crate::footprint::Footprints;
 use crate::light::{
-    Curved, CurvedSun, Disc, FrameLanes, LinearSky, Luster, Shine, Slant, Vectors, Ways,
+    Curved, CurvedSun, Disc, FrameLanes, LinearSky, Sheen, Shine, Slant, Vectors, Ways,
 };
 use crate::raster::{LitLanes, QuadBlock};
 use crate::relief::displacement;
@@ -21,8 +21,8 @@ pub(super) struct CurvedLights {
     places: Vec<Vec3>,
     suns: Vec<CurvedSun>,
     points: Vec<Vec3>,
-    /// Where highlights are asked for: see [`Shine`].
-    shine: Option<(Eye, Luster)>,
+    /// Of a glossy surface: see [`Shine`].
+    shine: Option<(Eye, Sheen)>,
     /// On the pairs.
     shone: Shone,
 }
@@ -70,7 +70,7 @@ impl CurvedLights {
             discs: discs.iter().map(|(disc, _)| *disc).collect(),
             points: places.iter().map(|(_, intensity)| *intensity).collect(),
             places: places.iter().map(|(place, _)| *place).collect(),
-            shine: swept.gloss.map(|luster| (scene.camera.viewpoint(), luster)),
+            shine: swept.sheen.map(|sheen| (scene.camera.viewpoint(), sheen)),
             shone: Shone::default(),
         };
         let mut shone = Shone::default();
@@ -135,7 +135,7 @@ impl CurvedLights {
     pub(super) fn of<'a>(&'a self, shone: &'a Shone) -> Curved<'a> {
         let Self { suns, points, shine, .. } = self;
         let Shone { skies, frames, slants, ways, to_eyes } = shone;
-        let shine = shine.map(|(_, luster)| Shine { luster, to_eyes });
+        let shine = shine.map(|(_, sheen)| Shine { sheen, to_eyes });
         Curved { suns, skies, frames, slants, points, ways, shine }
     }
 }

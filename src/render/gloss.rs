@@ -1,32 +1,14 @@
 //! What flat pieces of glossy surfaces reflect, ready to be seen texel by texel.
 
-use super::mapped::{mean_finish, own_roughness, reflecting, scatters, texel_finish};
+use super::mapped::{mean_finish, own_roughness, reflecting, scatters};
 use crate::filter::Prepared;
-use crate::light::reflection::{Fresnel, Reflectance};
-use crate::light::{Gloss, Layer, Openings, SkyLobe, SkyShares, TextureFrame, lit_parts};
+use crate::light::reflection::Reflectance;
+use crate::light::{Gloss, Openings, SkyLobe, TextureFrame, lit_parts};
 use crate::scene::{Light, Material, Scene};
 use crate::texture::{FULL_F32, Surface, Texel};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::Arc;
-
-/// What lies above the diffuse layer of a glossy surface with relief: there each texel that is seen hides as much
-/// as its own normal says.
-pub(super) fn layer(
-    frame: &TextureFrame,
-    material: &Material,
-    unlit: &Prepared,
-    reflectance: &Reflectance,
-) -> Option<Gloss> {
-    if material.is_matte() || !unlit.has_relief() {
-        return None;
-    }
-    let (roughness, _) = mean_finish(material, unlit);
-    let of = Fresnel::of_dielectric(&texel_finish(material, unlit, [0, 0]));
-    let shares = SkyShares::new((roughness, of.grazing), reflectance);
-    let layer = Layer { shares, straight: of.straight.x };
-    Some(Gloss::of_layer(frame, layer, unlit.surface().relief_depth()))
-}
 
 /// What a flat piece of a glossy surface reflects of a sun or of the sky.
 #[derive(Debug)]

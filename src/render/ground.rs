@@ -8,7 +8,7 @@ use super::outlines::Outlines;
 use crate::filter::Prepared;
 use crate::footprint::{Footprint, Footprints};
 use crate::light::exact::Clearance;
-use crate::light::{LocalLights, Luster, SmoothTriangle, SurfacePoint};
+use crate::light::{LocalLights, Sheen, SmoothTriangle, SurfacePoint};
 use crate::raster::{AttributePlanes, LitLanes, LitPlanes, Plane, QuadPair};
 use crate::relief::HeightField;
 use crate::scene::{Finish, Material, Scene};
@@ -48,8 +48,8 @@ pub(crate) struct Swept {
     pub(crate) lights: u64,
     /// Whether the sky is one of them.
     pub(crate) has_sky: bool,
-    /// Of a rough surface whose highlights are asked for, not diffuse light.
-    pub(crate) gloss: Option<Luster>,
+    /// What is asked for of a glossy surface, if that is not its diffuse layer alone.
+    pub(crate) sheen: Option<Sheen>,
 }
 
 /// A side of a flat piece whose light is baked.
@@ -121,6 +121,14 @@ impl Ground<'_> {
     pub(super) fn finish(&self, pixel: &Footprint) -> Finish {
         let finish = self.material.finish(|map| map.over(pixel.hit, [pixel.dx, pixel.dy]));
         Finish { emissive: self.emissive(), ..finish }
+    }
+
+    /// Whether the horizon shows its diffuse layer through what lies above each texel.
+    pub(super) fn is_seen_through(&self) -> bool {
+        match self.swept {
+            Some(swept) => matches!(swept.sheen, Some(Sheen::Layer(_))),
+            None => self.prepared.shows_eye(),
+        }
     }
 
     /// Whether no place of it has a diffuse layer.

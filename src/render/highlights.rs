@@ -9,7 +9,7 @@ use super::hidden_lights::HiddenLights;
 use super::mapped::MappedGloss;
 use super::shade::{ShadeScratch, Shader};
 use crate::footprint::Footprints;
-use crate::light::SeenGloss;
+use crate::light::{SeenGloss, Sheen};
 use crate::raster::QuadBlock;
 use crate::scene::Light;
 use crate::simd::PixelLanes;
@@ -31,7 +31,7 @@ impl Shader<'_> {
         block: &QuadBlock,
         scratch: &mut ShadeScratch,
     ) -> Option<SweptGloss> {
-        let MappedGloss { material, prepared, luster, shows_sky } = ground.gloss?;
+        let MappedGloss { material, prepared, luster, shows_sky, .. } = ground.gloss?;
         // More lights than bits are lit place by place.
         if !self.traits.asks_for_lights || self.scene.lights.len() > 64 {
             return None;
@@ -46,7 +46,7 @@ impl Shader<'_> {
         }
         let of = Ground { material, prepared, unlit: prepared, diffuse: prepared, ..*ground };
         let reflecting = Ground { baked: None, glow: None, gloss: None, ..of };
-        let swept = Swept { lights, has_sky, gloss: Some(*luster) };
+        let swept = Swept { lights, has_sky, sheen: Some(Sheen::Luster(*luster)) };
         let mut colors = Vec::with_capacity(block.num_pairs());
         self.swept(&reflecting, (swept, hidden), block, scratch, &mut colors);
         Some(SweptGloss { is_curved, has_sky, colors })

@@ -7,7 +7,7 @@
 
 use crate::filter::Prepared;
 use crate::light::reflection::{Fresnel, Reflectance, alpha};
-use crate::light::{Luster, SkyShares, rough_length};
+use crate::light::{Layer, Luster, SkyShares, rough_length};
 use crate::scene::{Finish, Material, MaterialMaps, Sky};
 use crate::texture::{Normals, Surface, Texture};
 use glam::Vec3;
@@ -39,6 +39,8 @@ pub(crate) struct MappedGloss {
     pub(crate) material: Material,
     pub(crate) prepared: Prepared,
     pub(crate) luster: Luster,
+    /// What its diffuse layer is seen through.
+    pub(crate) layer: Layer,
     /// Whether what texels reflect of the sky is better than what their mean does.
     pub(crate) shows_sky: bool,
 }
@@ -88,10 +90,19 @@ impl Mapped {
                 material: Material { base_color: Vec3::ONE, maps, ..Material::default() },
                 prepared: unlit.recolored(reflecting),
                 luster,
+                layer: layer(material, unlit, reflectance),
                 shows_sky: scatters(unlit.surface(), sky),
             }
         });
     }
+}
+
+/// What lies above a material's diffuse layer: each texel that is seen hides as much as its own normal says.
+pub(super) fn layer(material: &Material, unlit: &Prepared, reflectance: &Reflectance) -> Layer {
+    let (roughness, _) = mean_finish(material, unlit);
+    let of = Fresnel::of_dielectric(&texel_finish(material, unlit, [0, 0]));
+    let shares = SkyShares::new((roughness, of.grazing), reflectance);
+    Layer { shares, straight: of.straight.x }
 }
 
 /// The roughness of a material, unless its texels have their own.

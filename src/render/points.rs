@@ -76,7 +76,7 @@ impl Shader<'_> {
         let has_relief = unlit.prepared.field().is_some() && unlit.prepared.surface().has_normals();
         // More lights than bits are lit place by place.
         if has_relief && self.scene.lights.len() <= 64 {
-            let points = Swept { lights, has_sky: false, gloss: None };
+            let points = Swept { lights, has_sky: false, sheen: None };
             self.swept(&unlit, (points, hidden), block, scratch, &mut shown);
         } else {
             for first in (0..block.num_pairs()).step_by(PAIRS_AT_ONCE) {

@@ -8,6 +8,7 @@ use super::skies::Skies;
 use crate::filter::Prepared;
 use crate::geometry::Projection;
 use crate::light::Disc;
+use crate::light::Sheen;
 use crate::light::exact::{Ceiling, Occluders};
 use crate::light::reflection::Reflectance;
 use crate::relief::HeightField;
@@ -299,11 +300,12 @@ impl PreparedScene {
             && settings.filter.traits().asks_for_lights
             && prepared.field().is_some()
             && prepared.surface().has_normals();
-        let swept = is_swept.then_some(Swept { lights: u64::MAX, has_sky: true, gloss: None });
         let diffuse = mapped.and_then(|mapped| mapped.diffuse.as_ref()).unwrap_or(unlit);
         let prepared = if is_swept { diffuse } else { prepared };
         let glow = mapped.and_then(|mapped| mapped.glow.as_ref());
         let gloss = mapped.and_then(|mapped| mapped.gloss.get());
+        let sheen = gloss.map(|gloss| Sheen::Layer(gloss.layer));
+        let swept = is_swept.then_some(Swept { lights: u64::MAX, has_sky: true, sheen });
         let hidden = None;
         Some(Ground {
             material,

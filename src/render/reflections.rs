@@ -47,7 +47,7 @@ impl Shader<'_> {
         below.resize(colors.len(), [PixelLanes::ZERO; 3]);
         // What the horizon shows of a layer's texels is seen through what lies above each of them already.
         let is_layered =
-            matches!(self.settings.filter, Filter::Horizon(_)) && ground.prepared.shows_eye();
+            matches!(self.settings.filter, Filter::Horizon(_)) && ground.is_seen_through();
         if !is_layered {
             add(&mut below, colors);
             colors.fill([PixelLanes::ZERO; 3]);

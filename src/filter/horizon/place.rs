@@ -2,8 +2,8 @@
 
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
-use super::shine::PatchShine;
-use crate::light::{Curved, Horizons};
+use super::shine::{PatchLayer, PatchShine};
+use crate::light::{Curved, Horizons, Sheen, Shine};
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes};
 use crate::texture::{FULL_F32, Surface, Texel, near_origin};
 
@@ -18,10 +18,17 @@ pub(crate) fn lit_at(
     let rows = horizons.rows(0, false);
     let picks = [lane as u8];
     let light = PatchLight::new(curved, rows, &picks, &here);
-    let shine = curved
-        .shine
-        .as_ref()
-        .map(|shine| PatchShine::new(&light, shine, (&picks, &here), (1.0, false)));
+    let (mut shine, mut layer) = (None, None);
+    match &curved.shine {
+        Some(Shine { sheen: Sheen::Luster(luster), to_eyes }) => {
+            let with = (&picks[..], &here[..]);
+            shine = Some(PatchShine::new(&light, (luster, to_eyes), with, (1.0, false)));
+        }
+        Some(Shine { sheen: Sheen::Layer(of), to_eyes }) => {
+            layer = Some(PatchLayer::new(&light, (of, to_eyes), (&picks, &here)));
+        }
+        None => {}
+    }
     let [x, y] = surface.base().in_texels(near_origin(place, surface.wrap())).map(|c| c - 0.5);
     let [column, row] = [x, y].map(f32::floor);
     let between = Between::new(LineLanes::splat(x - column));
@@ -37,5 +44,10 @@ pub(crate) fn lit_at(
         shown.map(|lanes| lanes.as_array()[0])
     });
     let shown = [0, 1, 2].map(|c| near[c] + (far[c] - near[c]) * (y - row));
-    if shine.is_some() { shown } else { [0, 1, 2].map(|c| texel.color[c] * shown[c]) }
+    if shine.is_some() {
+        return shown;
+    }
+    let passed =
+        layer.map_or(1.0, |layer| layer.passed(normal, LineLanes::ZERO, 0.0).as_array()[0]);
+    [0, 1, 2].map(|c| texel.color[c] * shown[c] * passed)
 }

@@ -10,12 +10,62 @@
 use super::fit::{Fit, Linear};
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
-use crate::light::{Luster, Shine, dot, lobes, spread_square};
+use crate::light::{Layer, Luster, Vectors, dot, lobes, spread_square};
 use crate::simd::{Between, LineLanes};
 use crate::texture::FULL_F32;
 
 /// Least cosine between a texel's normal and the middle of what it sees of the sky.
 const LEAST_OPEN: f32 = 0.05;
+
+/// The way to the eye over a patch, from each texel's own frame.
+#[derive(Clone, Copy, Debug)]
+struct PatchEye {
+    /// Along u, along v and off the surface: of about unit length.
+    to_eye: [Linear; 3],
+}
+
+impl PatchEye {
+    /// Of picked pixels, which lie so on the lines of a patch.
+    fn new(to_eyes: &[Vectors], (picks, pixels): (&[u8], &[PixelOnLines])) -> Self {
+        let fit = Fit::new(pixels);
+        let to_eye = [0, 1, 2].map(|c| {
+            let of =
+                |pick: &u8| to_eyes[usize::from(pick / 8)][c].as_array()[usize::from(pick % 8)];
+            fit.linear(picks.iter().map(of))
+        });
+        Self { to_eye }
+    }
+
+    #[inline(always)]
+    fn at(&self, xi: LineLanes, q: LineLanes) -> [LineLanes; 3] {
+        unit(self.to_eye.each_ref().map(|c| c.at(xi, q)))
+    }
+}
+
+/// The light of a patch's diffuse layer, through what lies above.
+#[derive(Clone, Debug)]
+pub(super) struct PatchLayer<'a> {
+    pub(super) light: &'a PatchLight<'a>,
+    layer: Layer,
+    eye: PatchEye,
+}
+
+impl<'a> PatchLayer<'a> {
+    pub(super) fn new(
+        light: &'a PatchLight<'a>,
+        (layer, to_eyes): (&Layer, &[Vectors]),
+        with: (&[u8], &[PixelOnLines]),
+    ) -> Self {
+        Self { light, layer: *layer, eye: PatchEye::new(to_eyes, with) }
+    }
+
+    /// The part of light that gets through to texels on row `q` with such normals.
+    #[inline(always)]
+    pub(super) fn passed(&self, normal: [LineLanes; 3], xi: LineLanes, q: f32) -> LineLanes {
+        let [x, y] = self.light.middle;
+        self.layer.passed(normal, self.eye.at(xi - x, LineLanes::splat(q - y)))
+    }
+}
 
 /// What a patch reflects.
 #[derive(Clone, Debug)]
@@ -24,8 +74,7 @@ pub(super) struct PatchShine<'a> {
     luster: Luster,
     /// The stored colour that reflects all.
     full: f32,
-    /// To the eye along u, along v and off the surface: of about unit length.
-    to_eye: [Linear; 3],
+    eye: PatchEye,
     /// Whether normals are single ones: those of the base level.
     is_base: bool,
 }
@@ -35,18 +84,12 @@ impl<'a> PatchShine<'a> {
     /// over `unit`.
     pub(super) fn new(
         light: &'a PatchLight<'a>,
-        Shine { luster, to_eyes }: &Shine,
-        (picks, pixels): (&[u8], &[PixelOnLines]),
+        (luster, to_eyes): (&Luster, &[Vectors]),
+        with: (&[u8], &[PixelOnLines]),
         (unit, is_base): (f32, bool),
     ) -> Self {
-        let fit = Fit::new(pixels);
-        let to_eye = [0, 1, 2].map(|c| {
-            let of =
-                |pick: &u8| to_eyes[usize::from(pick / 8)][c].as_array()[usize::from(pick % 8)];
-            fit.linear(picks.iter().map(of))
-        });
         let full = FULL_F32 * unit / luster.color_scale;
-        Self { light, luster: *luster, full, to_eye, is_base }
+        Self { light, luster: *luster, full, eye: PatchEye::new(to_eyes, with), is_base }
     }
 
     /// What texels with such colours and normals, whose words of horizons begin at a place of the
@@ -62,7 +105,7 @@ impl<'a> PatchShine<'a> {
         let PatchLight { middle, rows, suns, points, sky } = self.light;
         let [xi, p] = [xi - middle[0], p - middle[1]];
         let q = LineLanes::splat(q - middle[1]);
-        let to_eye = unit(self.to_eye.each_ref().map(|c| c.at(xi, q)));
+        let to_eye = self.eye.at(xi, q);
         let a = spread_square(self.luster.alpha_squared, normal, self.is_base);
         let grazing = LineLanes::splat(self.luster.grazing * self.full);
         let mut sums = [LineLanes::ZERO; 3];

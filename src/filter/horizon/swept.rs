@@ -7,10 +7,11 @@ use super::lit::PatchLight;
 use super::patch::{PatchScratch, Patches, Picks};
 use super::pixels::PixelOnLines;
 use super::plan::Plan;
-use super::shine::PatchShine;
+use super::shine::{PatchLayer, PatchShine};
 use super::show::{Interpolated, Show, Texels};
 use super::sunlit::PatchSun;
 use crate::filter::points;
+use crate::light::{Sheen, Shine};
 use crate::simd::BETWEEN_SCALE;
 use crate::texture::Texel;
 
@@ -37,12 +38,17 @@ impl<'a> Patches<'a> {
                 found.fill(Texel::default());
                 return 0;
             }
-            if let Some(shine) = &curved.shine {
-                let unit = (BETWEEN_SCALE, plan.level == 0);
-                let shine = PatchShine::new(&light, shine, (picks, pixels), unit);
-                plan.run(&Interpolated(&shine), unlit, (pixels, &[]), totals)
-            } else {
-                plan.run(&Interpolated(&light), unlit, (pixels, &[]), totals)
+            match &curved.shine {
+                Some(Shine { sheen: Sheen::Luster(luster), to_eyes }) => {
+                    let unit = (BETWEEN_SCALE, plan.level == 0);
+                    let shine = PatchShine::new(&light, (luster, to_eyes), (picks, pixels), unit);
+                    plan.run(&Interpolated(&shine), unlit, (pixels, &[]), totals)
+                }
+                Some(Shine { sheen: Sheen::Layer(layer), to_eyes }) => {
+                    let layer = PatchLayer::new(&light, (layer, to_eyes), (picks, pixels));
+                    plan.run(&Interpolated(&layer), unlit, (pixels, &[]), totals)
+                }
+                None => plan.run(&Interpolated(&light), unlit, (pixels, &[]), totals),
             }
         } else if let Some(gloss) = self.gloss {
             let gloss = PatchGloss::new(gloss, to_eyes, pixels, (plan.level, is_turned));
