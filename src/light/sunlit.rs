@@ -180,7 +180,7 @@ impl<L: Lanes> Sunlit<L> {
 
     /// `V`, the part of the sun that is seen.
     #[inline(always)]
-    pub(crate) fn sun_seen(&self) -> L {
+    fn sun_seen(&self) -> L {
         (self.above / self.width + L::splat(0.5)).at_least(0.0).at_most(1.0)
     }
 

@@ -76,20 +76,20 @@ pub(crate) struct Crossing<'a> {
     column: i32,
     /// Where lines lie between their texels and the next ones.
     part: f32,
-    /// Red and green, blue and height.
-    words: [u32x8; 2],
+    /// Blue and height.
+    blue_height: u32x8,
 }
 
 impl Crossing<'_> {
     /// Linear colours, in stored units.
     pub(crate) fn colors(&self) -> [TexelLanes; 3] {
-        let [red_green, blue_height] = self.words;
-        [low_half(red_green), high_half(red_green), low_half(blue_height)]
+        let red_green = self.blended(0);
+        [low_half(red_green), high_half(red_green), low_half(self.blue_height)]
     }
 
     /// Heights, in stored units.
     pub(crate) fn height(&self) -> TexelLanes {
-        high_half(self.words[1])
+        high_half(self.blue_height)
     }
 
     /// Normals, of any length.
@@ -106,6 +106,11 @@ impl Crossing<'_> {
         let words = rows.row(self.row);
         let start = rows.run_start(self.column) + plane * rows.stride();
         [Rows::run(words, start), Rows::run(words, start + 1)]
+    }
+
+    /// Both halves of the words of a plane of the surface's own rows, between texels.
+    fn blended(&self, plane: usize) -> u32x8 {
+        Blend::new(TexelLanes::splat(self.part)).mix(self.both(self.rows, plane))
     }
 
     /// Between what texels before and after each line say.
@@ -250,14 +255,11 @@ impl<'a, S: Sight> Sweep<'a, S> {
         let x = first as f32 + self.shear * eta;
         let left = x.floor();
         let (row, column) = (eta as i32, left as i32);
-        let (words, start) = (self.rows.row(row), self.rows.run_start(column));
-        let blend = Blend::new(TexelLanes::splat(x - left));
-        let pick = |plane: usize| {
-            let start = start + plane * self.rows.stride();
-            blend.mix([Rows::run(words, start), Rows::run(words, start + 1)])
-        };
         let (rows, is_turned, part) = (self.rows, self.is_turned, x - left);
-        let crossing = Crossing { rows, is_turned, row, column, part, words: [pick(0), pick(1)] };
+        let blue_height = u32x8::ZERO;
+        let mut crossing = Crossing { rows, is_turned, row, column, part, blue_height };
+        // Most rows are hidden: nothing else is read of them.
+        crossing.blue_height = crossing.blended(1);
         let depth = TexelLanes::ONE - crossing.height() * (1.0 / FULL_F32);
         (crossing, TexelLanes::splat(i as f32) - depth * self.depth)
     }
