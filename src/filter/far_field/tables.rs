@@ -57,6 +57,8 @@ pub(in crate::filter) struct FarField {
     /// is up to 6 dB worse.)
     pub(super) plane: f32,
     source: Source,
+    /// Whether it shows highlights: between two azimuths these bend too much for a straight line.
+    pub(super) is_bent: bool,
     /// By length, then azimuth: the longer the displacement, the more azimuths. Each is built when
     /// it is first asked for, since a frame asks for few of them.
     images: Vec<OnceLock<FarImage>>,
@@ -78,6 +80,7 @@ impl FarField {
             return None;
         }
         let lengths = Lengths::new(surface);
+        let is_bent = gloss.as_ref().is_some_and(Gloss::is_shiny);
         let power = if gloss.is_some() { AZIMUTH_POWER_OF_GLOSS } else { AZIMUTH_POWER };
         let plane = grazing_depth(surface, first_level, &lengths);
         let views = PROBED_LENGTHS.into_iter().flat_map(|length| {
@@ -91,6 +94,7 @@ impl FarField {
             starts: table_starts(surface, first_level, (mib, power)),
             plane,
             source: Source::new(surface, (gloss, sunlit), probes),
+            is_bent,
             images: Vec::new(),
         };
         far.images.resize_with(far.starts[NUM_LENGTHS], OnceLock::new);
@@ -118,28 +122,26 @@ impl FarField {
         self.lengths.displacement(length, 4.0 * azimuth as f32 / self.num_azimuths(length) as f32)
     }
 
-    /// The four nearest tables to a displacement in base texels, and their shares.
-    pub(super) fn neighbours(&self, displacement: [f32; 2]) -> [(usize, f32); 4] {
+    /// The tables around a displacement in base texels: of the two nearest lengths, the N nearest azimuths,
+    /// and their shares, as `blend` gives them by the part of the way from the middle two's first to the other.
+    pub(super) fn neighbours<const N: usize>(
+        &self,
+        displacement: [f32; 2],
+        blend: impl Fn(f32) -> [f32; N],
+    ) -> [[(usize, f32); N]; 2] {
         let length = self.lengths.place_of(displacement);
         // The place is bounded; from the last length the one before is the near one.
         let near = (length as usize).min(NUM_LENGTHS - 2);
         let along = length - near as f32;
-        let ([a, b], [c, d]) = (self.pair(near, displacement), self.pair(near + 1, displacement));
-        [
-            (a.0, a.1 * (1.0 - along)),
-            (b.0, b.1 * (1.0 - along)),
-            (c.0, c.1 * along),
-            (d.0, d.1 * along),
-        ]
-    }
-
-    /// The two nearest tables of a length and their shares.
-    fn pair(&self, length: usize, [du, dv]: [f32; 2]) -> [(usize, f32); 2] {
-        let num = self.num_azimuths(length);
-        let azimuth = diamond_angle(du, dv) * (num as f32 * 0.25);
-        // Azimuths go around: after the last comes the first.
-        let (left, part) = (azimuth as usize % num, azimuth - azimuth.floor());
-        [(self.starts[length] + left, 1.0 - part), (self.starts[length] + (left + 1) % num, part)]
+        let [du, dv] = displacement;
+        [(near, 1.0 - along), (near + 1, along)].map(|(length, of_all)| {
+            let num = self.num_azimuths(length);
+            let azimuth = diamond_angle(du, dv) * (num as f32 * 0.25);
+            // Azimuths go around: after the last comes the first.
+            let first = azimuth as usize + num + 1 - N / 2;
+            let shares = blend(azimuth - azimuth.floor());
+            std::array::from_fn(|i| (self.starts[length] + (first + i) % num, shares[i] * of_all))
+        })
     }
 }
 
