@@ -35,7 +35,8 @@ struct Relief {
     field: OnceLock<HeightField>,
     cells: OnceLock<HeightCells>,
     loss: LevelLoss,
-    horizons: OnceLock<Horizons>,
+    /// Without skylines, and with them.
+    horizons: [OnceLock<Horizons>; 2],
 }
 
 impl Prepared {
@@ -47,7 +48,7 @@ impl Prepared {
                 field: OnceLock::new(),
                 cells: OnceLock::new(),
                 loss: LevelLoss::new(&surface),
-                horizons: OnceLock::new(),
+                horizons: Default::default(),
             })
         });
         let (has_far_field, is_lit, gloss, sunlit) = (true, false, None, Arc::default());
@@ -146,10 +147,14 @@ impl Prepared {
         Some(relief.cells.get_or_init(|| HeightCells::new(&self.surface)))
     }
 
-    /// What hides light from its texels; `None` where the surface is flat.
-    pub(crate) fn horizons(&self) -> Option<&Horizons> {
-        let relief = self.relief.as_deref()?;
-        Some(relief.horizons.get_or_init(|| Horizons::new(&self.surface)))
+    /// What hides light from its texels, for what is glossy with skylines; `None` where the surface is flat.
+    pub(crate) fn horizons(&self, is_glossy: bool) -> Option<&Horizons> {
+        let [matte, glossy] = &self.relief.as_deref()?.horizons;
+        if is_glossy {
+            return Some(glossy.get_or_init(|| Horizons::with_skylines(&self.surface)));
+        }
+        // Those with skylines serve what is matte, too.
+        Some(glossy.get().unwrap_or_else(|| matte.get_or_init(|| Horizons::new(&self.surface))))
     }
 
     /// What levels lose in occlusion; `None` where the surface is flat.

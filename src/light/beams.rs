@@ -43,6 +43,12 @@ impl TextureFrame {
         Vec3::from(unit_axes(self.tangents, self.normal).map(|axis| axis.dot(direction)))
     }
 
+    /// The direction that the axes see so.
+    pub(super) fn world(&self, local: Vec3) -> Vec3 {
+        let [x, y, z] = unit_axes(self.tangents, self.normal);
+        x * local.x + y * local.y + z * local.z
+    }
+
     /// Light from a unit direction; `None` from behind the surface.
     pub fn beam(&self, to_light: Vec3, intensity: Vec3) -> Option<Beam> {
         let [u, v] = self.tangents;

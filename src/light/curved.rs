@@ -102,6 +102,11 @@ pub struct CurvedSun {
 }
 
 impl<'a> Curved<'a> {
+    /// Whether what is reflected of lights is shown, and nothing else.
+    pub(crate) fn is_shiny(&self) -> bool {
+        matches!(self.shine, Some(Shine { sheen: Sheen::Luster(_), .. }))
+    }
+
     /// How a sun shines on a vector of pixels.
     pub(crate) fn slant(&self, vector: usize, sun: usize) -> &'a Slant {
         &self.slants[vector * self.suns.len() + sun]

@@ -6,10 +6,10 @@
 //! swept, and what is averaged is highlights, not normals. It is the same with the sky.
 
 use super::beams::TextureFrame;
-use super::openings::Openings;
 use super::reflection::{LEAST_COSINE, alpha};
 use super::sky_lobe::SkyLobe;
 use super::sky_shares::Layer;
+use super::skylines::{Skyline, Skylines};
 use super::vectors::dot;
 use crate::simd::Lanes;
 use glam::Vec3;
@@ -94,32 +94,32 @@ impl Gloss {
     }
 
     /// What texels see of the sky, where that is what they reflect.
-    pub(crate) fn openings(&self) -> Option<&Openings> {
+    pub(crate) fn skylines(&self) -> Option<&Skylines> {
         match &self.shine {
             Shine::Sun(_) | Shine::Layer(_) => None,
-            Shine::Sky(sky, _) => Some(sky.openings()),
+            Shine::Sky(sky, _) => Some(sky.skylines()),
         }
     }
 
-    /// What texels with such normals and openings show to an eye in a direction, red, green and blue; those
+    /// What texels with such normals and skylines show to an eye in a direction, red, green and blue; those
     /// of coarser levels than the base are means. Their colours are `full` where they are the surface's
     /// colour scale.
     #[inline(always)]
-    pub fn shown<L: Lanes>(
+    pub(crate) fn shown<L: Lanes>(
         &self,
         (color, full): ([L; 3], f32),
-        [normal, opening, to_eye]: [[L; 3]; 3],
+        [normal, to_eye]: [[L; 3]; 2],
+        skyline: &Skyline<L>,
         (is_base, spread): (bool, L),
     ) -> [L; 3] {
-        let a = spread_square(self.alpha_squared, normal, is_base);
-        let a = (a + spread).at_most(1.0);
+        let a = spread_square(self.alpha_squared, normal, (is_base, spread));
         match &self.shine {
             Shine::Sun(to_light) => {
                 let shown = lobes(normal, [to_light.to_array().map(L::splat), to_eye], a);
                 color.map(|color| color * shown)
             }
             Shine::Sky(sky, scale) => {
-                sky.shown((color, full / scale), [normal, opening, to_eye], a)
+                sky.shown((color, full / scale), [normal, to_eye], skyline, a)
             }
             Shine::Layer(layer) => {
                 let passed = layer.passed(normal, to_eye);
@@ -132,15 +132,16 @@ impl Gloss {
 /// Least `a^2` that is told from lengths, which are rounded.
 const LEAST_OWN: f32 = 1e-4;
 
-/// `a^2` of a roughness, if texels do not have their own, and of how short their normals are.
+/// `a^2` of a roughness, if texels do not have their own, and of how much normals differ: how short those
+/// are that are means of others says so, and of single ones `spread` does.
 #[inline(always)]
 pub(crate) fn spread_square<L: Lanes>(
     alpha_squared: Option<f32>,
     normal: [L; 3],
-    is_base: bool,
+    (is_base, spread): (bool, L),
 ) -> L {
     let spread = if is_base && alpha_squared.is_some() {
-        L::splat(0.0)
+        spread
     } else {
         let square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
         let inverse = L::splat(1.0) / square.at_least(1e-6).sqrt();

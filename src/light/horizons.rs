@@ -17,9 +17,11 @@
 //! t0 = 1/pi int max(0, n.l) V dl        t = 1/pi int max(0, n.l) V l dl
 //! ```
 //!
-//! which are four numbers of the texel, summed over its horizons.
+//! which are four numbers of the texel, summed over its horizons. What is glossy reflects a part of the sky
+//! alone, and is asked where that lies over the [skyline](super::skylines).
 
 use super::byte_levels::ByteLevels;
+use super::skylines::{NUM_SKYLINE_WORDS, NUM_TERMS, add_harmonics, packed};
 use crate::relief::directions::diamond_direction;
 use crate::relief::{LitParts, MAX_SLOPE, RowScratch};
 use crate::texture::{Level, Rows, Surface};
@@ -38,11 +40,12 @@ pub const NORMAL_PLANE: usize = NUM_AZIMUTHS / 4;
 /// The plane of `t`: x and y from -1 to 1, z from 0.
 pub const SKY_PLANE: usize = NORMAL_PLANE + 1;
 
-/// Words of a texel: four horizons each, then those two.
-const NUM_WORDS: usize = SKY_PLANE + 1;
+/// The first plane of the skylines, where there are any.
+pub const SKYLINE_PLANE: usize = SKY_PLANE + 1;
 
-/// A texel's words.
-type Words = [u32; NUM_WORDS];
+/// Words of a texel: four horizons each, then those two, then those of its skyline.
+const NUM_WORDS: usize = SKYLINE_PLANE;
+const NUM_WORDS_OF_GLOSSY: usize = SKYLINE_PLANE + NUM_SKYLINE_WORDS;
 
 /// The horizons of a surface's texels, level by level.
 #[derive(Clone, Debug)]
@@ -51,9 +54,18 @@ pub struct Horizons(ByteLevels);
 impl Horizons {
     /// Finds the horizons of a surface with relief.
     pub fn new(surface: &Surface) -> Self {
+        Self::in_words::<NUM_WORDS>(surface)
+    }
+
+    /// And its skylines.
+    pub fn with_skylines(surface: &Surface) -> Self {
+        Self::in_words::<NUM_WORDS_OF_GLOSSY>(surface)
+    }
+
+    fn in_words<const N: usize>(surface: &Surface) -> Self {
         let level = surface.base();
         let size = level.size();
-        let mut texels = vec![[0; NUM_WORDS]; size[0] * size[1]];
+        let mut texels = vec![[0; N]; size[0] * size[1]];
         for azimuth in 0..NUM_AZIMUTHS {
             let lit = LitHeights::new(level, azimuth, surface.relief_depth());
             let (word, shift) = (azimuth / 4, azimuth % 4 * 8);
@@ -69,6 +81,10 @@ impl Horizons {
             for (x, texel) in texels.iter_mut().enumerate() {
                 let normal = level.texel(x as i32, y as i32).normal;
                 [texel[NORMAL_PLANE], texel[SKY_PLANE]] = sky.words(texel, normal);
+                if N > SKYLINE_PLANE {
+                    let skyline = sky.skyline(texel);
+                    texel[SKYLINE_PLANE..].copy_from_slice(&skyline);
+                }
             }
         });
         Self(ByteLevels::new(texels, size, surface.wrap()))
@@ -78,7 +94,7 @@ impl Horizons {
     pub fn texel(&self, x: i32, y: i32) -> Vec<u32> {
         let rows = self.rows(0, false);
         let start = rows.start_at(x, y);
-        (0..NUM_WORDS).map(|plane| rows.words()[start + plane * rows.stride()]).collect()
+        (0..rows.num_planes()).map(|plane| rows.words()[start + plane * rows.stride()]).collect()
     }
 
     /// The words of a level row by row: along u, or along v where they are wanted turned.
@@ -185,11 +201,21 @@ impl SkySums {
         Self { azimuths, above }
     }
 
-    fn words(&self, texel: &Words, [nx, ny, nz]: [f32; 3]) -> [u32; 2] {
+    /// The horizons of a texel, with their azimuths' directions and shares.
+    fn horizons<'a>(
+        &'a self,
+        texel: &'a [u32],
+    ) -> impl Iterator<Item = (usize, &'a ([f32; 2], f32))> {
+        self.azimuths
+            .iter()
+            .enumerate()
+            .map(|(i, azimuth)| ((texel[i / 4] >> (i % 4 * 8) & 0xff) as usize, azimuth))
+    }
+
+    fn words(&self, texel: &[u32], [nx, ny, nz]: [f32; 3]) -> [u32; 2] {
         let mut sums = [0.0_f32; 4];
-        for (i, ([x, y], share)) in self.azimuths.iter().enumerate() {
-            let horizon = texel[i / 4] >> (i % 4 * 8) & 0xff;
-            let [c, s, cc, sc, ss] = self.above[horizon as usize];
+        for (horizon, ([x, y], share)) in self.horizons(texel) {
+            let [c, s, cc, sc, ss] = self.above[horizon];
             // n.l is `a cos + nz sin`.
             let a = nx * x + ny * y;
             let level = a * cc + nz * sc;
@@ -202,5 +228,16 @@ impl SkySums {
             word([signed(nx), signed(ny), signed(nz), sums[0]]),
             word([signed(sums[1]), signed(sums[2]), sums[3], 0.0]),
         ]
+    }
+
+    fn skyline(&self, texel: &[u32]) -> [u32; NUM_SKYLINE_WORDS] {
+        let mut terms = [0.0; NUM_TERMS];
+        for (horizon, (direction, share)) in self.horizons(texel) {
+            let root = horizon as f32 / 255.0;
+            let c = root * root;
+            let sine = c / (c * c + (1.0 - c) * (1.0 - c)).sqrt();
+            add_harmonics(&mut terms, *direction, sine * share);
+        }
+        packed(terms)
     }
 }

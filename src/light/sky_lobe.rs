@@ -1,16 +1,16 @@
 //! What texels of a rough surface reflect of the sky.
 //!
 //! A texel reflects the sky around the direction in which a mirror would, the wider the rougher it is,
-//! as far as its [opening](super::openings) lets it: the part of the lobe within the cone is a ramp in
-//! the angle between the two, as wide as the lobe. How much of light it reflects depends on the angle of
+//! as far as its [skyline](super::skylines) lets it: the part of the lobe above that is a ramp in the
+//! angle between the two, as wide as the lobe. How much of light it reflects depends on the angle of
 //! the eye to its normal.
 
 use super::beams::TextureFrame;
 use super::curved::LinearSky;
 use super::disc::spiral;
-use super::openings::Openings;
 use super::reflection::Reflectance;
 use super::sky_shares::SkyShares;
+use super::skylines::{Skyline, Skylines};
 use super::surface_point::unit_axes;
 use super::vectors::dot;
 use crate::scene::Sky;
@@ -23,7 +23,7 @@ use std::sync::Arc;
 pub struct SkyLobe {
     sky: LocalSky,
     shares: SkyShares,
-    openings: Arc<Openings>,
+    skylines: Arc<Skylines>,
 }
 
 /// The light of the half space, by direction, for lanes.
@@ -49,28 +49,29 @@ impl SkyLobe {
         (sky, frame): (&Sky, &TextureFrame),
         finish: (f32, f32),
         reflectance: &Reflectance,
-        openings: Arc<Openings>,
+        skylines: Arc<Skylines>,
     ) -> Self {
         let shares = SkyShares::new(finish, reflectance);
-        Self { sky: LocalSky::new(sky, frame), shares, openings }
+        Self { sky: LocalSky::new(sky, frame), shares, skylines }
     }
 
     /// What texels see of the half space.
-    pub fn openings(&self) -> &Openings {
-        &self.openings
+    pub(crate) fn skylines(&self) -> &Skylines {
+        &self.skylines
     }
 
-    /// What texels with such normals and openings, and with an `a^2` up to 1, show to an eye in a direction.
+    /// What texels with such normals and skylines, and with an `a^2` up to 1, show to an eye in a direction.
     /// Of light that comes straight they reflect `straight`, which is `full` where it is all.
     #[inline(always)]
-    pub fn shown<L: Lanes>(
+    pub(crate) fn shown<L: Lanes>(
         &self,
         (straight, full): ([L; 3], f32),
-        directions: [[L; 3]; 3],
+        directions: [[L; 3]; 2],
+        skyline: &Skyline<L>,
         a: L,
     ) -> [L; 3] {
         let alpha = a.sqrt();
-        let ([x, y], direction) = self.shares.lobe(directions, alpha);
+        let ([x, y], direction) = self.shares.lobe(directions, skyline, alpha);
         let light = self.sky.at(direction, alpha);
         let y = y * L::splat(full);
         [0, 1, 2].map(|c| (straight[c] * x + y) * light[c].at_least(0.0))
@@ -146,21 +147,34 @@ fn wide(sky: &Sky, normal: Vec3) -> LinearSky {
 mod tests {
     use super::*;
     use crate::light::reflection::alpha;
+    use crate::light::skylines::NUM_TERMS;
     use crate::simd::PixelLanes;
     use crate::texture::{Surface, SurfaceMaps};
 
     fn lobe(sky: &Sky, roughness: f32) -> SkyLobe {
         let surface = Surface::new(SurfaceMaps::default()).unwrap();
         let frame = TextureFrame { tangents: [Vec3::X, Vec3::NEG_Z], normal: Vec3::Y };
-        let openings = Arc::new(Openings::new(&surface, &frame));
-        SkyLobe::new((sky, &frame), (roughness, 1.0), &Reflectance::new(), openings)
+        let skylines = Arc::new(Skylines::new(&surface, &frame));
+        SkyLobe::new((sky, &frame), (roughness, 1.0), &Reflectance::new(), skylines)
     }
 
-    /// What a texel shows that reflects `straight` of light that comes straight.
-    fn shown(lobe: &SkyLobe, (roughness, straight): (f32, f32), directions: [Vec3; 3]) -> [f32; 3] {
+    /// A skyline that goes so high all round, and by so much higher toward one side than to the other.
+    fn skyline(height: f32, side: f32) -> Skyline<PixelLanes> {
+        let mut terms = [0.0; NUM_TERMS];
+        [terms[0], terms[1]] = [height, side];
+        Skyline::new(terms.map(PixelLanes::splat))
+    }
+
+    /// What a texel with such a normal shows to an eye that reflects `straight` of light that comes straight.
+    fn shown(
+        lobe: &SkyLobe,
+        (roughness, straight): (f32, f32),
+        directions: [Vec3; 2],
+        skyline: &Skyline<PixelLanes>,
+    ) -> [f32; 3] {
         let lanes = directions.map(|d| d.to_array().map(PixelLanes::splat));
         let a = PixelLanes::splat(alpha(roughness) * alpha(roughness));
-        let shown = lobe.shown(([PixelLanes::splat(straight); 3], 1.0), lanes, a);
+        let shown = lobe.shown(([PixelLanes::splat(straight); 3], 1.0), lanes, skyline, a);
         shown.map(|lanes| lanes.as_array()[0])
     }
 
@@ -176,8 +190,9 @@ mod tests {
             for cosine in [0.1, 0.4, 0.7, 1.0] {
                 let [x, y] = reflectance.at(cosine, alpha(roughness));
                 for straight in [0.04, 1.0] {
-                    let open = [Vec3::Z, Vec3::Z, eye(cosine)];
-                    let found = shown(&lobe, (roughness, straight), open)[0];
+                    let directions = [Vec3::Z, eye(cosine)];
+                    let found =
+                        shown(&lobe, (roughness, straight), directions, &skyline(0.0, 0.0))[0];
                     let expected = 2.0 * (straight * x + y);
                     assert!(
                         (found - expected).abs() < 0.05,
@@ -195,9 +210,8 @@ mod tests {
             for i in 0..500 {
                 let at = |k: usize| ((i * k % 41) as f32 - 20.0) / 20.0;
                 let normal = Vec3::new(at(7), at(11), 0.8).normalize();
-                let opening = Vec3::new(at(3), at(5), 1.0).normalize() * (at(13) * 0.5 + 0.5);
-                let found =
-                    shown(&lobe, (roughness, 1.0), [normal, opening, eye(at(17) * 0.5 + 0.5)]);
+                let directions = [normal, eye(at(17) * 0.5 + 0.5)];
+                let found = shown(&lobe, (roughness, 1.0), directions, &skyline(at(13), at(3)));
                 assert!(found.iter().all(|c| (0.0..1.0 + 1e-5).contains(c)), "{found:?}");
             }
         }
@@ -207,9 +221,9 @@ mod tests {
     fn a_narrow_opening_hides_what_lies_beside_it() {
         let sky = Sky::Color(Vec3::ONE);
         let smooth = lobe(&sky, 0.1);
-        // A cone of 30 degrees: a quarter of what a plane sees.
-        let shown =
-            |cosine: f32| shown(&smooth, (0.1, 1.0), [Vec3::Z, Vec3::Z * 0.25, eye(cosine)])[0];
+        // A skyline 60 degrees high all round.
+        let high = skyline(0.75_f32.sqrt(), 0.0);
+        let shown = |cosine: f32| shown(&smooth, (0.1, 1.0), [Vec3::Z, eye(cosine)], &high)[0];
         let (within, edge, beyond) = (shown(0.98), shown(0.75_f32.sqrt()), shown(0.5));
         assert!(
             within > 0.97 && (0.4..0.6).contains(&edge) && beyond < 0.03,
@@ -221,7 +235,7 @@ mod tests {
     fn a_gradient_shows_its_upper_half_alone() {
         let sky = Sky::Gradient { top: Vec3::X, horizon: Vec3::Y, ground: Vec3::Z };
         let lobe = lobe(&sky, 0.1);
-        let of = |cosine: f32| shown(&lobe, (0.1, 1.0), [Vec3::Z, Vec3::Z, eye(cosine)]);
+        let of = |cosine: f32| shown(&lobe, (0.1, 1.0), [Vec3::Z, eye(cosine)], &skyline(0.0, 0.0));
         let (up, level) = (of(1.0), of(0.02));
         assert!(up[0] > 0.95 && up[1] < 0.05, "{up:?}");
         assert!(level[1] > 0.9 && level[0] < 0.05 && level[2] == 0.0, "{level:?}");

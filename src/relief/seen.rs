@@ -117,6 +117,11 @@ impl Crossing<'_> {
     pub(crate) fn mix(&self, near: TexelLanes, far: TexelLanes) -> TexelLanes {
         near + (far - near) * self.part
     }
+
+    /// Where lines lie between the two.
+    pub(crate) fn part(&self) -> TexelLanes {
+        TexelLanes::splat(self.part)
+    }
 }
 
 /// How a surface is seen.

@@ -3,7 +3,7 @@
 use super::mapped::{mean_finish, own_roughness, reflecting, scatters};
 use crate::filter::Prepared;
 use crate::light::reflection::Reflectance;
-use crate::light::{Gloss, Openings, SkyLobe, TextureFrame, lit_parts};
+use crate::light::{Gloss, SkyLobe, Skylines, TextureFrame, lit_parts};
 use crate::scene::{Light, Material, Scene};
 use crate::texture::{FULL_F32, Surface, Texel};
 use glam::Vec3;
@@ -48,7 +48,7 @@ pub(super) fn gloss(
             (&scene.sky, frame),
             mean_finish(material, unlit),
             reflectance,
-            Arc::new(Openings::new(surface, frame)),
+            Arc::new(Skylines::new(surface, frame)),
         );
         let lobe = (lobe, reflecting.color_scale());
         let gloss_of_sky = Gloss::of_sky(frame, lobe, roughness, relief_depth);

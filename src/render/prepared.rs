@@ -145,10 +145,10 @@ impl PreparedScene {
                 let all = scene.meshes.iter().map(|mesh| mesh.material).filter(|_| self.has_points);
                 for material in curved.into_iter().chain(all) {
                     let unlit = self.of_material(material, settings.parallax);
-                    unlit.map(Prepared::horizons);
                     let mapped = self.mapped.as_ref().and_then(|(_, all)| all[material].as_ref());
+                    let material = &scene.materials[material];
+                    unlit.map(|unlit| unlit.horizons(!material.is_matte()));
                     if let (Some(mapped), Some(unlit)) = (mapped, unlit) {
-                        let material = &scene.materials[material];
                         mapped.make_glossy((material, unlit), (&scene.sky, self.reflectance()));
                     }
                 }

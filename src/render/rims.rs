@@ -109,7 +109,8 @@ impl<'a> Rims<'a> {
             let Some(hits) = self.ground.hits(self.outlines, planes, places) else { continue };
             let lights = lights.and_then(|(lights, pixel)| {
                 let shone = lights.at_hits(&self.lit(planes.triangle[0], &hits), pixel);
-                Some((lights, shone, prepared.horizons()?))
+                let horizons = prepared.horizons(lights.of(&shone).shine.is_some())?;
+                Some((lights, shone, horizons))
             });
             for (lane, hit) in hits.iter().enumerate() {
                 let Some(hit) = hit else { continue };

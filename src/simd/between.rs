@@ -41,6 +41,9 @@ pub struct Between {
 pub const BETWEEN_SCALE: f32 = 32767.0;
 
 impl Between {
+    /// All before the first texel.
+    pub const NONE: Self = Self { cells: i32x16::ZERO, shares: u32x16::ZERO };
+
     /// For places in texels from the run's first, 0 to just under 31, that ascend by at most 2.
     #[inline(always)]
     pub fn new(places: f32x16) -> Self {

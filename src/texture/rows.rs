@@ -246,6 +246,11 @@ impl Rows {
         u32x16::new(*lanes)
     }
 
+    /// Words of a texel.
+    pub(crate) fn num_planes(&self) -> usize {
+        self.num_planes
+    }
+
     /// Whether texels have a third word, their normal.
     pub(crate) fn has_normals(&self) -> bool {
         self.num_planes == 3

@@ -1,7 +1,7 @@
 //! What tables hold of lit and glossy surfaces: what shines on the segments between texels, and what
 //! an eye in one direction sees of it.
 
-use crate::light::{Gloss, Sunlight, Sunlit, SunlitTexels, unpack_openings};
+use crate::light::{Gloss, Skyline, Sunlight, Sunlit, SunlitTexels};
 use crate::relief::seen::{Crossing, Sight};
 use crate::simd::{TexelLanes, as_signed, u32x8};
 use crate::texture::{FULL_F32, Surface};
@@ -24,29 +24,32 @@ impl<'a> Glossy<'a> {
     fn shown(
         &self,
         colors: [TexelLanes; 3],
-        [normal, opening]: [[TexelLanes; 3]; 2],
+        normal: [TexelLanes; 3],
+        skyline: &Skyline<TexelLanes>,
     ) -> [TexelLanes; 3] {
-        let directions = [normal, opening, self.to_eye];
-        self.gloss.shown((colors, FULL_F32), directions, (self.level == 0, TexelLanes::ZERO))
+        let (directions, is_base) = ([normal, self.to_eye], self.level == 0);
+        self.gloss.shown((colors, FULL_F32), directions, skyline, (is_base, TexelLanes::ZERO))
     }
 }
 
-/// Colours, normals and openings.
+/// Colours, normals and skylines.
 impl Sight for Glossy<'_> {
-    type Values = [[TexelLanes; 3]; 3];
+    type Values = ([[TexelLanes; 3]; 2], Skyline<TexelLanes>);
 
     fn read(&self, crossing: &Crossing) -> Self::Values {
-        let openings = self.gloss.openings().map(|openings| {
-            let rows = openings.rows(self.level, crossing.is_turned);
-            let [near, far] = crossing.both(rows, 0).map(unpack_openings);
-            std::array::from_fn(|i| crossing.mix(near[i], far[i]))
+        let skyline = self.gloss.skylines().map(|skylines| {
+            let rows = skylines.rows(self.level, crossing.is_turned);
+            let [a, b] = [0, 1].map(|plane| crossing.both(rows, plane));
+            let [near, far] = [0, 1].map(|i| Skyline::unpack([a[i], b[i]]));
+            near.mix(&far, crossing.part())
         });
-        [crossing.colors(), crossing.normals(), openings.unwrap_or([TexelLanes::ZERO; 3])]
+        ([crossing.colors(), crossing.normals()], skyline.unwrap_or(Skyline::<TexelLanes>::FLAT))
     }
 
     fn between(&self, [near, far]: [&Self::Values; 2], part: TexelLanes) -> [TexelLanes; 3] {
-        let mix = |k: usize| std::array::from_fn(|i| near[k][i] + (far[k][i] - near[k][i]) * part);
-        self.shown(mix(0), [mix(1), mix(2)])
+        let mix = |a: TexelLanes, b: TexelLanes| a + (b - a) * part;
+        let mix3 = |k: usize| std::array::from_fn(|i| mix(near.0[k][i], far.0[k][i]));
+        self.shown(mix3(0), mix3(1), &near.1.mix(&far.1, part))
     }
 }
 
@@ -84,7 +87,7 @@ impl Sight for InSun<'_> {
         let shown = place.shown(&self.light);
         match &self.layer {
             None => shown,
-            Some(layer) => layer.shown(shown, [place.normal, [TexelLanes::ZERO; 3]]),
+            Some(layer) => layer.shown(shown, place.normal, &Skyline::<TexelLanes>::FLAT),
         }
     }
 }

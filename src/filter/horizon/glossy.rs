@@ -4,7 +4,7 @@ use super::fit::{Fit, Linear};
 use super::lines::Step;
 use super::pixels::PixelOnLines;
 use super::show::{Part, Show};
-use crate::light::{Gloss, openings_at};
+use crate::light::{Gloss, Skyline};
 use crate::simd::{BETWEEN_SCALE, LineLanes};
 use crate::texture::{FULL_F32, Rows};
 use glam::Vec3;
@@ -14,7 +14,7 @@ use glam::Vec3;
 pub(super) struct PatchGloss<'a> {
     gloss: &'a Gloss,
     /// What texels see of the sky, where that is reflected.
-    pub(super) openings: Option<&'a Rows>,
+    pub(super) skylines: Option<&'a Rows>,
     /// The `xi` and `q` around which numbers are linear.
     middle: [f32; 2],
     /// The way to the eye along u and along v for each length up: linear over a plane, as the way
@@ -29,6 +29,18 @@ pub(super) struct PatchGloss<'a> {
 /// lobe of GGX has a longer tail. Measured on metal of roughness 0.3 near by: 0 has 37.0 dB, 1/24 38.7, 1/12 37.9.
 const SPREAD: f32 = 1.0 / 24.0;
 
+/// By how much `a^2` of a lobe grows over a part of the way between two texels with such normals, where those
+/// of lines beside each other differ by so much, squared.
+#[inline(always)]
+pub(super) fn spread(
+    [last, next]: [&[LineLanes; 3]; 2],
+    across: LineLanes,
+    length: LineLanes,
+) -> LineLanes {
+    let [x, y, z]: [LineLanes; 3] = std::array::from_fn(|i| next[i] - last[i]);
+    ((x * x + y * y + z * z) * (length * length) + across) * SPREAD
+}
+
 /// Least height of the eye over the surface, as a share of its distance.
 const LEAST_HEIGHT: f32 = 1e-3;
 
@@ -41,13 +53,13 @@ impl<'a> PatchGloss<'a> {
         pixels: &[PixelOnLines],
         (level, is_turned): (usize, bool),
     ) -> Self {
-        let openings = gloss.openings().map(|openings| openings.rows(level, is_turned));
+        let skylines = gloss.skylines().map(|skylines| skylines.rows(level, is_turned));
         let fit = Fit::new(pixels);
         let to_eye = [0, 1].map(|i| {
             let along = |to_eye: &Vec3| to_eye[i] / to_eye.z.max(LEAST_HEIGHT);
             fit.linear(to_eyes.iter().map(along))
         });
-        Self { gloss, openings, middle: fit.middle, to_eye, is_base: level == 0 }
+        Self { gloss, skylines, middle: fit.middle, to_eye, is_base: level == 0 }
     }
 
     /// The unit direction to the eye on lines, where texels are seen so.
@@ -66,7 +78,7 @@ pub(super) struct Glossy {
     color: [LineLanes; 3],
     normal: [LineLanes; 3],
     /// What they see of the sky, where that is reflected.
-    opening: [LineLanes; 3],
+    skyline: Skyline<LineLanes>,
     /// The square of how much normals change from one line to the next.
     across: LineLanes,
     /// The lines, and where the texels are seen on them.
@@ -79,45 +91,42 @@ impl Show<3> for PatchGloss<'_> {
     const NONE: Glossy = Glossy {
         color: [LineLanes::ZERO; 3],
         normal: [LineLanes::ZERO; 3],
-        opening: [LineLanes::ZERO; 3],
+        skyline: Skyline::<LineLanes>::FLAT,
         across: LineLanes::ZERO,
         seen_at: [LineLanes::ZERO; 2],
     };
 
     #[inline(always)]
     fn others(&self) -> Option<&Rows> {
-        self.openings
+        self.skylines
     }
 
     #[inline(always)]
     fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> Glossy {
         let ([r, g, b, x, y, z], _) = step.values();
-        let opening = match self.openings {
-            Some(rows) => openings_at(rows, step.other(), &step.between),
-            None => [LineLanes::ZERO; 3],
+        let skyline = match self.skylines {
+            Some(rows) => Skyline::<LineLanes>::at(rows, step.other(), &step.between),
+            None => Skyline::<LineLanes>::FLAT,
         };
         let (across, seen_at) = (step.normals_across(), step.seen_at());
-        Glossy { color: [r, g, b], normal: [x, y, z], opening, across, seen_at }
+        Glossy { color: [r, g, b], normal: [x, y, z], skyline, across, seen_at }
     }
 
     #[inline(never)]
     fn between(&self, [last, next]: [&Glossy; 2], part: &Part) -> [LineLanes; 3] {
-        // Lines that see nothing of a segment ask for places far beyond its ends.
-        let within = |c: LineLanes| c.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
-        let (middle, length) = (within(part.middle), within(part.length));
+        let Part { middle, length } = part.within();
         let mix = |a: LineLanes, b: LineLanes| a + (b - a) * middle;
         let mix3 = |a: &[LineLanes; 3], b: &[LineLanes; 3]| -> [LineLanes; 3] {
             std::array::from_fn(|i| mix(a[i], b[i]))
         };
-        let [x, y, z]: [LineLanes; 3] = std::array::from_fn(|i| next.normal[i] - last.normal[i]);
-        let along = (x * x + y * y + z * z) * (length * length);
-        let spread = (along + mix(last.across, next.across)) * SPREAD;
+        let across = mix(last.across, next.across);
+        let spread = spread([&last.normal, &next.normal], across, length);
         let color = mix3(&last.color, &next.color);
         let normal = mix3(&last.normal, &next.normal);
-        let opening = mix3(&last.opening, &next.opening);
+        let skyline = last.skyline.mix(&next.skyline, middle);
         let to_eye = self.eye_at([next.seen_at[0], mix(last.seen_at[1], next.seen_at[1])]);
         let full = FULL_F32 * BETWEEN_SCALE;
-        self.gloss.shown((color, full), [normal, opening, to_eye], (self.is_base, spread))
+        self.gloss.shown((color, full), [normal, to_eye], &skyline, (self.is_base, spread))
     }
 }
 
@@ -153,13 +162,13 @@ impl<S: Show<3>> Show<3> for Layered<'_, S> {
 
     #[inline(always)]
     fn between(&self, [last, next]: [&Self::Values; 2], part: &Part) -> [LineLanes; 3] {
-        let middle = part.middle.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE);
+        let Part { middle, .. } = part.within();
         let mix = |a: LineLanes, b: LineLanes| a + (b - a) * middle;
         let (a, b) = (&last.1, &next.1);
         let normal = std::array::from_fn(|i| mix(a.normal[i], b.normal[i]));
         let to_eye = self.gloss.eye_at([0, 1].map(|i| mix(a.seen_at[i], b.seen_at[i])));
         let colors = self.show.between([&last.0, &next.0], part);
-        let directions = [normal, [LineLanes::ZERO; 3], to_eye];
-        self.gloss.gloss.shown((colors, 1.0), directions, (true, LineLanes::ZERO))
+        let none = Skyline::<LineLanes>::FLAT;
+        self.gloss.gloss.shown((colors, 1.0), [normal, to_eye], &none, (true, LineLanes::ZERO))
     }
 }

@@ -188,17 +188,6 @@ impl<'a> PatchLight<'a> {
         self.suns.is_empty() && self.points.is_empty() && self.sky.is_none()
     }
 
-    /// `t0` and `t` of texels whose words of horizons begin at a place of the rows.
-    #[inline(always)]
-    pub(super) fn sky_seen(&self, start: usize, between: &Between) -> (LineLanes, [LineLanes; 3]) {
-        let [normals, sky] = [NORMAL_PLANE, SKY_PLANE]
-            .map(|plane| between.words_at(self.rows.words(), start + plane * self.rows.stride()));
-        let unit = 1.0 / (255.0 * BETWEEN_SCALE);
-        let part = |word: [u32x16; 2], i: u32| between.bits_of(word, 8 * i, 0xff) * unit;
-        let signed = |i: u32| part(sky, i) * 2.0 - 1.0;
-        (part(normals, 3), [signed(0), signed(1), part(sky, 2)])
-    }
-
     /// What a white surface shows of the lights where lines cross row `q`, whose words of horizons
     /// begin at `start`, are seen over `p` and have the stored heights `height`.
     #[inline(always)]

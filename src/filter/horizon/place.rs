@@ -2,7 +2,8 @@
 
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
-use super::shine::{PatchLayer, PatchShine};
+use super::shine::{PatchLayer, PatchShine, Shone};
+use super::show::{Part, Show};
 use crate::light::{Curved, Horizons, Sheen, Shine};
 use crate::simd::{BETWEEN_SCALE, Between, LineLanes};
 use crate::texture::{FULL_F32, Surface, Texel, near_origin};
@@ -35,18 +36,15 @@ pub(crate) fn lit_at(
     let height = LineLanes::splat((1.0 - depth) * (FULL_F32 * BETWEEN_SCALE));
     let at = [LineLanes::ZERO, LineLanes::ZERO, height];
     let [color, normal] = [texel.color, texel.normal].map(|of| of.map(LineLanes::splat));
-    let [near, far] = [0, 1].map(|i| {
-        let start = rows.start_at(column as i32, row as i32 + i);
-        let shown = match &shine {
-            Some(shine) => shine.at((start, &between), [color, normal], at, 0.0),
-            None => light.at(start, &between, at, 0.0),
-        };
-        shown.map(|lanes| lanes.as_array()[0])
-    });
-    let shown = [0, 1, 2].map(|c| near[c] + (far[c] - near[c]) * (y - row));
-    if shine.is_some() {
-        return shown;
+    let starts = [0, 1].map(|i| rows.start_at(column as i32, row as i32 + i));
+    if let Some(shine) = shine {
+        let [near, far] = starts.map(|start| Shone::new([color, normal], at, (start, between)));
+        let part = Part { middle: LineLanes::splat(y - row), length: LineLanes::ZERO };
+        return shine.between([&near, &far], &part).map(|lanes| lanes.as_array()[0]);
     }
+    let [near, far] =
+        starts.map(|start| light.at(start, &between, at, 0.0).map(|lanes| lanes.as_array()[0]));
+    let shown = [0, 1, 2].map(|c| near[c] + (far[c] - near[c]) * (y - row));
     let passed =
         layer.map_or(1.0, |layer| layer.passed(normal, LineLanes::ZERO, 0.0).as_array()[0]);
     [0, 1, 2].map(|c| texel.color[c] * shown[c] * passed)

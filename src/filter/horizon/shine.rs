@@ -3,19 +3,16 @@
 //!
 //! Lights are those that shine on it ([`PatchLight`]). The eye is seen from each texel's own frame:
 //! its direction is linear over the patch, as those to suns are.
-//!
-//! What a texel sees of the half space is told by what it shows of the sky, `t0` and `t`: of a cone
-//! whose axis is `d` the opening is `d t0 / (n.d)`, and `t` lies along that axis or near it.
 
 use super::fit::{Fit, Linear};
+use super::glossy::spread;
+use super::lines::Step;
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
-use crate::light::{Layer, Luster, Vectors, dot, lobes, spread_square};
+use super::show::{Part, Show};
+use crate::light::{Layer, Luster, SKYLINE_PLANE, Skyline, Vectors, dot, lobes, spread_square};
 use crate::simd::{Between, LineLanes};
-use crate::texture::FULL_F32;
-
-/// Least cosine between a texel's normal and the middle of what it sees of the sky.
-const LEAST_OPEN: f32 = 0.05;
+use crate::texture::{FULL_F32, Rows};
 
 /// The way to the eye over a patch, from each texel's own frame.
 #[derive(Clone, Copy, Debug)]
@@ -91,27 +88,96 @@ impl<'a> PatchShine<'a> {
         let full = FULL_F32 * unit / luster.color_scale;
         Self { light, luster: *luster, full, eye: PatchEye::new(to_eyes, with), is_base }
     }
+}
 
-    /// What texels with such colours and normals, whose words of horizons begin at a place of the
-    /// rows, show to the eye: see [`PatchLight::at`].
-    #[inline(always)]
-    pub(super) fn at(
-        &self,
-        (start, between): (usize, &Between),
+/// Texels of a group of lines, one of each, and where their words of horizons are.
+#[derive(Clone, Copy)]
+pub(super) struct Shone {
+    color: [LineLanes; 3],
+    normal: [LineLanes; 3],
+    /// The square of how much normals change from one line to the next.
+    across: LineLanes,
+    /// The lines, where the texels are seen on them, and the stored heights.
+    place: [LineLanes; 3],
+    /// The row.
+    q: f32,
+    start: usize,
+    between: Between,
+}
+
+impl Shone {
+    /// With such colours and normals, on the patch's middle row.
+    pub(super) fn new(
         [color, normal]: [[LineLanes; 3]; 2],
-        [xi, p, height]: [LineLanes; 3],
-        q: f32,
-    ) -> [LineLanes; 3] {
+        place: [LineLanes; 3],
+        (start, between): (usize, Between),
+    ) -> Self {
+        Self { color, normal, across: LineLanes::ZERO, place, q: 0.0, start, between }
+    }
+}
+
+/// What a curved surface reflects of lights, on each segment that is seen: what gets there is that of its two
+/// texels, in their shares.
+impl Show<3> for PatchShine<'_> {
+    type Values = Shone;
+
+    const NONE: Shone = Shone {
+        color: [LineLanes::ZERO; 3],
+        normal: [LineLanes::ZERO; 3],
+        across: LineLanes::ZERO,
+        place: [LineLanes::ZERO; 3],
+        q: 0.0,
+        start: 0,
+        between: Between::NONE,
+    };
+
+    #[inline(always)]
+    fn others(&self) -> Option<&Rows> {
+        Some(self.light.rows)
+    }
+
+    #[inline(always)]
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> Shone {
+        let ([r, g, b, x, y, z], height) = step.values();
+        let [xi, p] = step.seen_at();
+        Shone {
+            color: [r, g, b],
+            normal: [x, y, z],
+            across: step.normals_across(),
+            place: [xi, p, height],
+            q: step.q(),
+            start: step.other(),
+            between: step.between,
+        }
+    }
+
+    #[inline(never)]
+    fn between(&self, [last, next]: [&Shone; 2], part: &Part) -> [LineLanes; 3] {
         let PatchLight { middle, rows, suns, points, sky } = self.light;
-        let [xi, p] = [xi - middle[0], p - middle[1]];
-        let q = LineLanes::splat(q - middle[1]);
+        let Part { middle: at, length } = part.within();
+        let mix = |a: LineLanes, b: LineLanes| a + (b - a) * at;
+        let mix3 = |a: &[LineLanes; 3], b: &[LineLanes; 3]| -> [LineLanes; 3] {
+            std::array::from_fn(|i| mix(a[i], b[i]))
+        };
+        let color = mix3(&last.color, &next.color);
+        let normal = mix3(&last.normal, &next.normal);
+        let spread = spread([&last.normal, &next.normal], mix(last.across, next.across), length);
+        let alpha_squared =
+            spread_square(self.luster.alpha_squared, normal, (self.is_base, spread));
+        // What gets to the texels.
+        let xi = next.place[0] - middle[0];
+        let ends = [last, next].map(|texel| {
+            let [_, p, height] = texel.place;
+            let q = LineLanes::splat(texel.q - middle[1]);
+            ((*rows, texel.start, &texel.between), [xi, q], [xi, p - middle[1], height])
+        });
+        let q = mix(ends[0].1[1], ends[1].1[1]);
         let to_eye = self.eye.at(xi, q);
-        let a = spread_square(self.luster.alpha_squared, normal, self.is_base);
         let grazing = LineLanes::splat(self.luster.grazing * self.full);
         let mut sums = [LineLanes::ZERO; 3];
         let mut add = |way: [LineLanes; 3], share: LineLanes, intensity: &[f32; 3]| {
             let to_light = unit(way);
-            let shown = lobes(normal, [to_light, to_eye], a) * share;
+            let shown = lobes(normal, [to_light, to_eye], alpha_squared) * share;
             // Schlick's share, by the cosine to the half vector.
             let cosine = (dot(&to_light, &to_eye) * 0.5 + 0.5).fast_max(LineLanes::ZERO).sqrt();
             let c = (LineLanes::ONE - cosine).fast_max(LineLanes::ZERO);
@@ -123,19 +189,20 @@ impl<'a> PatchShine<'a> {
         };
         for sun in suns {
             let to_light = sun.to_light.each_ref().map(|c| c.at(xi, q));
-            add(to_light, sun.lit_part((rows, start, between), [xi, q]), &sun.intensity);
+            let [a, b] = ends.map(|(words, at, _)| sun.lit_part(words, at));
+            add(to_light, mix(a, b), &sun.intensity);
         }
         for point in points {
-            let (way, square, lit) = point.reaching((rows, start, between), [xi, p, height]);
-            add(way, lit / square, &point.intensity);
+            let [a, b] = ends.map(|(words, _, place)| point.reaching(words, place));
+            add(mix3(&a.0, &b.0), mix(a.2 / a.1, b.2 / b.1), &point.intensity);
         }
         if let Some(sky) = sky {
-            let (t0, t) = self.light.sky_seen(start, between);
-            let n = unit(normal);
-            let along = dot(&n, &t).fast_max(dot(&t, &t).sqrt() * LEAST_OPEN);
-            let by = t0 / along.fast_max(LineLanes::splat(1e-3));
-            let opening = t.map(|c| c * by);
-            let ([x, y], from) = self.luster.sky.lobe([n, opening, to_eye], a.sqrt());
+            let [a, b] = ends.map(|((_, start, between), ..)| {
+                Skyline::<LineLanes>::at(rows, start + SKYLINE_PLANE * rows.stride(), between)
+            });
+            let skyline = a.mix(&b, at);
+            let lobe = self.luster.sky.lobe([normal, to_eye], &skyline, alpha_squared.sqrt());
+            let ([x, y], from) = lobe;
             let light = sky.from(from, [xi, q]);
             (0..3).for_each(|i| sums[i] += (color[i] * x + y * self.full) * light[i]);
         }

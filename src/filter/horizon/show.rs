@@ -3,7 +3,7 @@
 
 use super::lines::Step;
 use super::lit::PatchLight;
-use super::shine::{PatchLayer, PatchShine};
+use super::shine::PatchLayer;
 use crate::simd::LineLanes;
 use crate::texture::Rows;
 
@@ -43,6 +43,16 @@ pub(super) trait Show<const CHANNELS: usize> {
 pub(super) struct Part {
     pub(super) middle: LineLanes,
     pub(super) length: LineLanes,
+}
+
+impl Part {
+    /// Between the two: lines that see nothing of a segment ask for places far beyond its ends.
+    #[inline(always)]
+    pub(super) fn within(&self) -> Self {
+        let [middle, length] = [self.middle, self.length]
+            .map(|c| c.fast_max(LineLanes::ZERO).fast_min(LineLanes::ONE));
+        Self { middle, length }
+    }
 }
 
 /// What texels show by themselves.
@@ -135,20 +145,5 @@ impl ShowTexels<3> for &PatchLayer<'_> {
         let ([_, _, _, x, y, z], _) = step.values();
         let passed = self.passed([x, y, z], step.seen_at()[0], step.q());
         self.light.read(step).map(|shown| shown * passed)
-    }
-}
-
-/// What a curved surface reflects of lights.
-impl ShowTexels<3> for &PatchShine<'_> {
-    #[inline(always)]
-    fn others(&self) -> Option<&Rows> {
-        Some(self.light.rows)
-    }
-
-    #[inline(never)]
-    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> [LineLanes; 3] {
-        let ([r, g, b, x, y, z], height) = step.values();
-        let [xi, p] = step.seen_at();
-        self.at((step.other(), &step.between), [[r, g, b], [x, y, z]], [xi, p, height], step.q())
     }
 }

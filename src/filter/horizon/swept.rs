@@ -42,7 +42,7 @@ impl<'a> Patches<'a> {
                 Some(Shine { sheen: Sheen::Luster(luster), to_eyes }) => {
                     let unit = (BETWEEN_SCALE, plan.level == 0);
                     let shine = PatchShine::new(&light, (luster, to_eyes), (picks, pixels), unit);
-                    plan.run(&Interpolated(&shine), unlit, (pixels, &[]), totals)
+                    plan.run(&shine, unlit, (pixels, &[]), totals)
                 }
                 Some(Shine { sheen: Sheen::Layer(layer), to_eyes }) => {
                     let layer = PatchLayer::new(&light, (layer, to_eyes), (picks, pixels));
