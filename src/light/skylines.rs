@@ -13,9 +13,12 @@
 
 use super::beams::TextureFrame;
 use super::byte_levels::ByteLevels;
-use super::texel_light::skylines;
+use super::texel_light::lit_parts;
+use crate::scene::angle::cos_sin;
 use crate::simd::{BETWEEN_SCALE, Between, Lanes, LineLanes, TexelLanes, as_signed, u32x8};
 use crate::texture::{Rows, Surface};
+use glam::Vec3;
+use rayon::prelude::*;
 
 /// Terms of a skyline.
 pub(super) const NUM_TERMS: usize = 7;
@@ -37,6 +40,10 @@ const ZERO: f32 = 127.0;
 /// Where the bytes of the terms lie: words, and first bits.
 const PLACES: [(usize, u32); NUM_TERMS] =
     [(0, 0), (0, 8), (0, 16), (0, 24), (1, 0), (1, 8), (1, 16)];
+
+/// Azimuths that skylines are told from, and heights of light in each.
+const NUM_AZIMUTHS: usize = 12;
+const NUM_HEIGHTS: usize = 12;
 
 /// The words of a texel.
 pub(super) const NUM_SKYLINE_WORDS: usize = 2;
@@ -69,6 +76,29 @@ impl Skylines {
     pub(crate) fn rows(&self, level: usize, is_turned: bool) -> &Rows {
         self.0.rows(level, is_turned)
     }
+}
+
+/// The skylines of a flat piece of a surface, texel by texel along u.
+fn skylines(surface: &Surface, frame: &TextureFrame) -> Vec<[f32; NUM_TERMS]> {
+    let [width, height] = surface.base().size();
+    let mut skylines = vec![[0.0; NUM_TERMS]; width * height];
+    for azimuth in 0..NUM_AZIMUTHS {
+        let [cos, sin] = cos_sin(azimuth as f64 / NUM_AZIMUTHS as f64).map(|c| c as f32);
+        // Light whose sines are evenly spaced: what of it does not get there lies below the skyline.
+        let beams = (0..NUM_HEIGHTS).filter_map(|i| {
+            let up = (i as f32 + 0.5) / NUM_HEIGHTS as f32;
+            let across = (1.0 - up * up).sqrt();
+            frame.beam(frame.world(Vec3::new(cos * across, sin * across, up)), Vec3::ONE)
+        });
+        let lit = lit_parts(surface, &beams.collect::<Vec<_>>());
+        skylines.par_chunks_exact_mut(width).enumerate().for_each(|(y, texels)| {
+            for (x, texel) in texels.iter_mut().enumerate() {
+                let sine = 1.0 - lit(x, y);
+                add_harmonics(texel, [cos, sin], sine / NUM_AZIMUTHS as f32);
+            }
+        });
+    }
+    skylines
 }
 
 impl Skyline<LineLanes> {
@@ -148,13 +178,12 @@ impl<L: Lanes> Skyline<L> {
 mod tests {
     use super::*;
     use crate::texture::{HeightImage, SurfaceMaps};
-    use glam::Vec3;
 
     /// How far directions at some elevation and azimuths, in eighths of a turn, lie above a skyline.
     fn above(skyline: [f32; NUM_TERMS], sine: f32, eighths: [f32; 3]) -> [f32; 3] {
         let skyline = Skyline(skyline.map(TexelLanes::splat));
         eighths.map(|eighth| {
-            let [cos, sin] = crate::scene::angle::cos_sin(f64::from(eighth) / 8.0);
+            let [cos, sin] = cos_sin(f64::from(eighth) / 8.0);
             let across = (1.0 - sine * sine).sqrt();
             let direction = [cos as f32 * across, sin as f32 * across, sine];
             let above = skyline.above(direction.map(TexelLanes::splat), TexelLanes::splat(0.01));

@@ -1,17 +1,11 @@
 //! What light leaves on the texels of a relief: sums over its beams, each swept over the whole surface.
 
-use super::beams::{Beam, TextureFrame};
-use super::skylines::{NUM_TERMS, add_harmonics};
+use super::beams::Beam;
 use crate::relief::{LitParts, RowScratch};
-use crate::scene::angle::cos_sin;
 use crate::simd::TexelLanes;
 use crate::texture::{Level, Surface, unpack_normals};
 use glam::Vec3;
 use rayon::prelude::*;
-
-/// Azimuths that skylines are told from, and heights of light in each.
-const NUM_AZIMUTHS: usize = 12;
-const NUM_HEIGHTS: usize = 12;
 
 /// What light leaves on a white surface, texel by texel.
 #[derive(Debug)]
@@ -97,31 +91,6 @@ pub(crate) fn lit_parts(
     let beams: Vec<_> = beams.iter().map(|b| Beam { intensity: share(b), ..*b }).collect();
     let sums = summed(surface, &beams, false);
     move |x, y| both(&sums, x, y)[0]
-}
-
-/// The skylines of a flat piece of a surface, texel by texel along u: see [`Skylines`](super::Skylines).
-pub(super) fn skylines(surface: &Surface, frame: &TextureFrame) -> Vec<[f32; NUM_TERMS]> {
-    let [width, height] = surface.base().size();
-    let mut skylines = vec![[0.0; NUM_TERMS]; width * height];
-    for azimuth in 0..NUM_AZIMUTHS {
-        let turn = azimuth as f64 / NUM_AZIMUTHS as f64;
-        let [cos, sin] = cos_sin(turn).map(|c| c as f32);
-        // Light whose sines are evenly spaced: what of it does not get there lies below the skyline.
-        let beams = (0..NUM_HEIGHTS).filter_map(|i| {
-            let up = (i as f32 + 0.5) / NUM_HEIGHTS as f32;
-            let across = (1.0 - up * up).sqrt();
-            let direction = frame.world(Vec3::new(cos * across, sin * across, up));
-            frame.beam(direction, Vec3::splat(1.0 / NUM_HEIGHTS as f32))
-        });
-        let lit = summed(surface, &beams.collect::<Vec<_>>(), false);
-        skylines.par_chunks_exact_mut(width).enumerate().for_each(|(y, texels)| {
-            for (x, texel) in texels.iter_mut().enumerate() {
-                let sine = 1.0 - both(&lit, x, y)[0];
-                add_harmonics(texel, [cos, sin], sine / NUM_AZIMUTHS as f32);
-            }
-        });
-    }
-    skylines
 }
 
 /// The light of beams at each texel, by its cosine to the texels' normals if wanted.

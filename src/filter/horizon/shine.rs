@@ -9,7 +9,7 @@ use super::glossy::spread;
 use super::lines::Step;
 use super::lit::PatchLight;
 use super::pixels::PixelOnLines;
-use super::show::{Part, Show};
+use super::show::{Part, Show, ShowTexels};
 use crate::light::{Layer, Luster, SKYLINE_PLANE, Skyline, Vectors, dot, lobes, spread_square};
 use crate::simd::{Between, LineLanes};
 use crate::texture::{FULL_F32, Rows};
@@ -61,6 +61,21 @@ impl<'a> PatchLayer<'a> {
     pub(super) fn passed(&self, normal: [LineLanes; 3], xi: LineLanes, q: f32) -> LineLanes {
         let [x, y] = self.light.middle;
         self.layer.passed(normal, self.eye.at(xi - x, LineLanes::splat(q - y)))
+    }
+}
+
+/// What lights shine on its texels, through what lies above each.
+impl ShowTexels<3> for &PatchLayer<'_> {
+    #[inline(always)]
+    fn others(&self) -> Option<&Rows> {
+        Some(self.light.rows)
+    }
+
+    #[inline(always)]
+    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> [LineLanes; 3] {
+        let ([_, _, _, x, y, z], _) = step.values();
+        let passed = self.passed([x, y, z], step.seen_at()[0], step.q());
+        self.light.read(step).map(|shown| shown * passed)
     }
 }
 

@@ -3,7 +3,6 @@
 
 use super::lines::Step;
 use super::lit::PatchLight;
-use super::shine::PatchLayer;
 use crate::simd::LineLanes;
 use crate::texture::Rows;
 
@@ -130,20 +129,5 @@ impl ShowTexels<3> for &PatchLight<'_> {
         let [xi, p] = step.seen_at();
         let shown = self.at(step.other(), &step.between, [xi, p, height], step.q());
         [0, 1, 2].map(|c| colors[c] * shown[c])
-    }
-}
-
-/// The same, through what lies above each texel.
-impl ShowTexels<3> for &PatchLayer<'_> {
-    #[inline(always)]
-    fn others(&self) -> Option<&Rows> {
-        Some(self.light.rows)
-    }
-
-    #[inline(always)]
-    fn read<const HALVES: bool>(&self, step: &Step<'_, HALVES>) -> [LineLanes; 3] {
-        let ([_, _, _, x, y, z], _) = step.values();
-        let passed = self.passed([x, y, z], step.seen_at()[0], step.q());
-        self.light.read(step).map(|shown| shown * passed)
     }
 }
